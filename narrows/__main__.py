@@ -1,0 +1,5 @@
+"""`python -m narrows` is the `narrows` command."""
+
+from narrows.cli import app
+
+app()
