@@ -5,7 +5,7 @@ from typing import Annotated, ClassVar, Literal
 
 from pydantic import Field
 
-from lammps_inputs.scene import FluidScene, NonNegative, Positive, Rotation, Thermostat
+from lammps_inputs.scene import FluidScene, NonNegative, Positive, Rotation
 
 
 class Bulk(FluidScene):
@@ -31,7 +31,6 @@ class Bulk(FluidScene):
         description="axis of the 3D rotation: random_axis (3.8), or coordinate_axes (hecht-2005)",
     )
     collision_time: Positive = Field(default=0.1, description="collision time tau_c [t0]")
-    thermostat: Thermostat = Field(default="none", description="thermostat of the fluid")
     shear_wave: Annotated[float, Field(ge=0, le=1)] = Field(
         default=0.0, description="initial amplitude of the shear wave [a0/t0]"
     )

@@ -115,7 +115,7 @@ class IntegratedWall:
         header = [
             "# 11-5 wall potential: index, distance, energy, force",
             "WALL",
-            f"N {self.table_points} FPRIME {self._slope(y[0])!r} {self._slope(y[-1])!r}",
+            f"N {self.table_points} FP {self._slope(y[0])!r} {self._slope(y[-1])!r}",
             "",
         ]
         return "\n".join([*header, *lines, ""])

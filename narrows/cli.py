@@ -2,4 +2,13 @@
 
 import typer
 
-app = typer.Typer(no_args_is_help=True, add_completion=False, help=__doc__)
+from narrows.run_cli import deck, run
+
+app = typer.Typer(
+    no_args_is_help=True,
+    add_completion=False,
+    pretty_exceptions_enable=False,
+    help="Particles driven through narrow spaces: scenes, LAMMPS decks, runs and their analysis.",
+)
+app.command()(deck)
+app.command()(run)

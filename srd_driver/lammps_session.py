@@ -1,0 +1,96 @@
+"""LAMMPS, in this process, running the deck of a run directory."""
+
+import contextlib
+from collections.abc import Iterator
+from pathlib import Path
+from typing import Any
+
+from lammps_inputs import Scene
+from lammps_inputs.deck import Start, script
+from srd_driver.errors import RunError
+from srd_driver.run_directory import Progress
+from srd_driver.session import Array
+
+
+class LammpsSession:
+    """The lines of `in.lammps` up to its `run`, then runs in pieces.
+
+    LAMMPS itself writes `checkpoint.STEP.restart` every `checkpoint_steps`, from inside its run, so
+    a checkpoint does not disturb the trajectory. fix srd keeps nothing in restart files: after a
+    resume positions and velocities of all particles are exact, its random numbers are new ones.
+    """
+
+    suffix = "restart"
+
+    def __init__(
+        self, scene: Scene, directory: Path, progress: Progress, checkpoint_steps: int, comm: Any
+    ) -> None:
+        from lammps import lammps
+
+        self.step = progress.step
+        self._directory = directory
+        self._comm = comm
+        self._colloids = scene.colloids
+        self._set_up = False
+        self._lammps = lammps(cmdargs=["-log", "none", "-screen", "none"], comm=comm)
+        *setup, run = script(scene, Start(progress.step, progress.checkpoint)).splitlines()
+        assert run.startswith("run "), "the last line of a deck is its run"
+        setup.append(f"restart {checkpoint_steps} checkpoint.*.{self.suffix}")
+        if self._colloids:
+            setup.append("variable mean_colloid_x equal xcm(colloids,x)")
+        with self._errors():
+            self._lammps.command("log log.lammps append")
+            self._lammps.commands_list(setup)
+
+    @property
+    def colloid_positions(self) -> Array:
+        return self._colloid_rows("x")
+
+    @property
+    def colloid_velocities(self) -> Array:
+        return self._colloid_rows("v")
+
+    def mean_colloid_position(self) -> float:
+        return float(self._lammps.extract_variable("mean_colloid_x"))
+
+    def advance(self, steps: int) -> None:
+        again = " pre no" if self._set_up else ""
+        with self._errors():
+            self._lammps.command(f"run {steps}{again} post no")
+        self._set_up = True
+        self.step += steps
+
+    def save(self, file: str) -> None:
+        if not (self._directory / file).exists():
+            with self._errors():
+                self._lammps.command(f"write_restart {file}")
+            self._set_up = False  # write_restart moves atoms between processes
+
+    def close(self) -> None:
+        self._lammps.close()
+
+    def _colloid_rows(self, name: str) -> Array:
+        # colloids come first: atom_modify first
+        local = self._lammps.extract_global("nlocal")
+        types = self._lammps.numpy.extract_atom("type")[:local]
+        rows: Array = self._lammps.numpy.extract_atom(name)[: int((types == 1).sum()), :2]
+        return rows
+
+    @contextlib.contextmanager
+    def _errors(self) -> Iterator[None]:
+        """Run LAMMPS in the run directory; its errors become one message."""
+        from lammps import MPIAbortException
+
+        try:
+            with contextlib.chdir(self._directory):
+                yield
+        except MPIAbortException as error:
+            if self._comm.size > 1:  # the other processes are stuck inside LAMMPS
+                print(f"narrows: {self._message(error)}", flush=True)
+                self._comm.Abort(1)
+            raise RunError(self._message(error)) from None
+        except Exception as error:
+            raise RunError(self._message(error)) from None
+
+    def _message(self, error: Exception) -> str:
+        return f"LAMMPS: {str(error).strip()} (log: {self._directory / 'log.lammps'})"

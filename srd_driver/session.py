@@ -1,0 +1,35 @@
+"""What the simulation asks of an engine while it runs in its run directory."""
+
+from typing import Protocol
+
+import numpy as np
+from numpy.typing import NDArray
+
+Array = NDArray[np.float64]
+
+
+class Session(Protocol):
+    """One engine at work; each file it writes is described in docs/run-directory.md."""
+
+    step: int
+    suffix: str  # of its checkpoint files
+
+    @property
+    def colloid_positions(self) -> Array:
+        """Colloid centres of this process, (n, 2), wrapped into the box: a view [a0]."""
+
+    @property
+    def colloid_velocities(self) -> Array:
+        """Colloid velocities of this process, (n, 2): a view [a0/t0]."""
+
+    def mean_colloid_position(self) -> float:
+        """Mean unwrapped x of all colloids [a0]."""
+
+    def advance(self, steps: int) -> None:
+        """Run whole sampling intervals, writing output."""
+
+    def save(self, file: str) -> None:
+        """Write a checkpoint into the run directory; under MPI, called by every process."""
+
+    def close(self) -> None:
+        """Release the engine."""
