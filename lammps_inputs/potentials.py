@@ -43,6 +43,12 @@ class RepulsiveMie:
         force = 4 * self.epsilon * self.exponent * (2 * u * u - u) / r
         return np.where(r < self.cutoff, force, 0.0)
 
+    def force_over_distance(self, r_squared: Array) -> Array:
+        """F(r)/r at squared distances [kBT/a0^2]: times the separation it is the force vector."""
+        u = (self.sigma**2 / r_squared) ** (self.exponent / 2)
+        force = 4 * self.epsilon * self.exponent * (2 * u * u - u) / r_squared
+        return np.where(r_squared < self.cutoff**2, force, 0.0)
+
     def pair_coeff(self, types: str) -> str:
         """The `pair_coeff` line of `pair_style mie/cut` for the two atom types.
 

@@ -1,0 +1,263 @@
+"""The reference engine: MPC fluid, force-coupled colloids, one collision interval after another.
+
+Equations of tabatabaei-2009, chapter 3. docs/reference.md states the order of operations and the
+random numbers, exactly enough to write another engine that gives the same particles.
+"""
+
+from os import PathLike
+from typing import Self
+
+import numpy as np
+from numpy.typing import NDArray
+
+from lammps_inputs import Bulk, Channel, InitialState, Scene, initial_state
+from srd_driver.reference import random_solvent, thermostats
+from srd_driver.reference.collision import Cells, collide, grid_shape, grid_shift
+from srd_driver.reference.colloids import ColloidForces
+from srd_driver.reference.counter_random import CounterRandom
+from srd_driver.reference.faults import SimulationFault
+from srd_driver.reference.streaming import stream
+from srd_driver.reference.walls import cut_cells, mean_with_virtual_particles
+
+Array = NDArray[np.float64]
+
+
+class ReferenceEngine:
+    """A scene in motion, in numpy.
+
+    Args:
+        scene: what to simulate.
+        state: where to start; by default `initial_state(scene)`.
+
+    Attributes:
+        scene: what is simulated.
+        collisions: collisions done so far.
+        colloid_images: box lengths along x to add to the wrapped colloid positions (N_c,).
+    """
+
+    def __init__(self, scene: Scene, state: InitialState | None = None) -> None:
+        state = state or initial_state(scene)
+        self.scene = scene
+        self.collisions = 0
+        self._fluid_positions = np.array(state.fluid_positions.T, order="C")
+        self._fluid_velocities = np.array(state.fluid_velocities.T, order="C")
+        self._colloid_positions = np.array(state.colloid_positions.T, order="C")
+        self._colloid_velocities = np.array(state.colloid_velocities.T, order="C")
+        self.colloid_images = np.zeros(scene.colloids, dtype=np.int64)
+
+        self._shape = grid_shape(scene.box, scene.periodic)
+        self._width = scene.width if scene.walls else None
+        self._field = np.zeros((scene.dimensions, 1))
+        self._field[0] = scene.fluid_gravity
+        self._coupling = ColloidForces(scene) if isinstance(scene, Channel) else None
+        self._colloid_mass = scene.colloid_mass if isinstance(scene, Channel) else 0.0
+        self._colloid_field = np.zeros((2, 1))
+        self._colloid_field[0] = scene.gravity if isinstance(scene, Channel) else 0.0
+
+    @property
+    def time(self) -> float:
+        """Simulated time [t0]."""
+        return self.collisions * self.scene.collision_time
+
+    @property
+    def fluid_positions(self) -> Array:
+        """(N_f, d) wrapped into the box, live [a0]."""
+        return self._fluid_positions.T
+
+    @property
+    def fluid_velocities(self) -> Array:
+        """(N_f, d) live [a0/t0]."""
+        return self._fluid_velocities.T
+
+    @property
+    def colloid_positions(self) -> Array:
+        """(N_c, 2) wrapped into the box, live [a0]."""
+        return self._colloid_positions.T
+
+    @property
+    def colloid_velocities(self) -> Array:
+        """(N_c, 2) live [a0/t0]."""
+        return self._colloid_velocities.T
+
+    def advance(self, collisions: int) -> None:
+        """Simulate so many collision intervals, each motion for tau_c and then one collision.
+
+        Raises:
+            SimulationFault: naming the particle and the step, when the state is broken.
+        """
+        try:
+            for _ in range(collisions):
+                if self._coupling is None:
+                    self._stream()
+                else:
+                    self._molecular_dynamics(self._coupling)
+                self._wrap()
+                self._check()
+                self._collide()
+                self.collisions += 1
+        except SimulationFault as fault:
+            raise SimulationFault(f"step {self._step}: {fault}") from None
+
+    def mean_velocity(self) -> Array:
+        """P_t / M_t of all particles (4.8, 4.9), shape (d,) [a0/t0]."""
+        momentum = self._fluid_velocities.sum(axis=1)
+        mass = float(self._fluid_velocities.shape[1])
+        if self._coupling is not None:
+            momentum = momentum + self._colloid_mass * self._colloid_velocities.sum(axis=1)
+            mass += self._colloid_mass * self._colloid_velocities.shape[1]
+        mean: Array = momentum / mass
+        return mean
+
+    def fluid_temperature(self) -> float:
+        """kBT of the fluid about its mean velocity in bins of half a cell along y [kBT]."""
+        bins = np.floor(2 * self._fluid_positions[1]).astype(np.intp)
+        occupation = np.bincount(bins)
+        energy = 0.0
+        for component in self._fluid_velocities:
+            mean = np.bincount(bins, component) / np.maximum(occupation, 1)
+            energy += float(np.sum((component - mean[bins]) ** 2))
+        free = len(self._fluid_velocities) * (len(bins) - np.count_nonzero(occupation))
+        return energy / free
+
+    def energy(self) -> float:
+        """Kinetic energy and the potential energy of the colloids' interactions [kBT]."""
+        energy = 0.5 * float(np.sum(self._fluid_velocities**2))
+        if self._coupling is not None:
+            energy += 0.5 * self._colloid_mass * float(np.sum(self._colloid_velocities**2))
+            self._find_pairs(self._coupling)
+            energy += self._coupling.energy(self._fluid_positions, self._colloid_positions)
+        return energy
+
+    def save(self, file: str | PathLike[str]) -> None:
+        """Write the state as npz; `load` continues from it bit for bit."""
+        with open(file, "wb") as stream_:
+            np.savez(
+                stream_,
+                collisions=self.collisions,
+                fluid_positions=self._fluid_positions,
+                fluid_velocities=self._fluid_velocities,
+                colloid_positions=self._colloid_positions,
+                colloid_velocities=self._colloid_velocities,
+                colloid_images=self.colloid_images,
+            )
+
+    @classmethod
+    def load(cls, scene: Scene, file: str | PathLike[str]) -> Self:
+        """The engine that `save` wrote, of the same scene."""
+        with np.load(file) as saved:
+            engine = cls(
+                scene,
+                InitialState(
+                    saved["fluid_positions"].T,
+                    saved["fluid_velocities"].T,
+                    saved["colloid_positions"].T,
+                    saved["colloid_velocities"].T,
+                ),
+            )
+            engine.collisions = int(saved["collisions"])
+            engine.colloid_images = saved["colloid_images"]
+        return engine
+
+    def _find_pairs(self, coupling: ColloidForces) -> None:
+        coupling.find_pairs(
+            self._fluid_positions,
+            self._fluid_velocities,
+            self._colloid_positions,
+            self._colloid_velocities,
+        )
+
+    def _stream(self) -> None:
+        """Free flight for tau_c, or one MD step of the fluid where there is no MD (3.3)."""
+        self._step = self.collisions + 1
+        stream(
+            self._fluid_positions,
+            self._fluid_velocities,
+            self._field,
+            self.scene.collision_time,
+            self._width,
+        )
+
+    def _molecular_dynamics(self, coupling: ColloidForces) -> None:
+        """Velocity Verlet of colloids and fluid through tau_c (3.45, 3.46, 3.51, 3.52)."""
+        time = self.scene.time_step
+        self._step = self.collisions * self.scene.steps_per_collision
+        self._find_pairs(coupling)
+        fluid, colloids = self._accelerations(coupling)
+        for _ in range(self.scene.steps_per_collision):
+            self._step += 1
+            stream(self._fluid_positions, self._fluid_velocities, fluid, time, self._width)
+            self._colloid_positions += time * (self._colloid_velocities + 0.5 * time * colloids)
+            if not coupling.pairs_hold(self._fluid_positions, self._colloid_positions):
+                self._find_pairs(coupling)
+            old_fluid, old_colloids = fluid, colloids
+            fluid, colloids = self._accelerations(coupling)
+            # streaming, bounces included, has added the whole of the old acceleration
+            self._fluid_velocities += 0.5 * time * (fluid - old_fluid)
+            self._colloid_velocities += 0.5 * time * (old_colloids + colloids)
+
+    def _accelerations(self, coupling: ColloidForces) -> tuple[Array, Array]:
+        """Of the fluid (2, N_f) and of the colloids (2, N_c), fields included (3.50)."""
+        on_fluid, on_colloids = coupling.forces(self._fluid_positions, self._colloid_positions)
+        return on_fluid + self._field, on_colloids / self._colloid_mass + self._colloid_field
+
+    def _wrap(self) -> None:
+        """Bring everything back into the periodic box, and count the colloids' turns."""
+        for axis, (size, periodic) in enumerate(
+            zip(self.scene.box, self.scene.periodic, strict=True)
+        ):
+            if periodic:
+                _wrap(self._fluid_positions[axis], size)
+        self.colloid_images += _wrap(self._colloid_positions[0], self.scene.length)
+
+    def _collide(self) -> None:
+        """The collision, the thermostat and the random solvent, on one shifted grid."""
+        scene, velocities = self.scene, self._fluid_velocities
+        random = CounterRandom(scene.seed, self.collisions)
+        if scene.hydrodynamics == "bath":
+            random_solvent.bath(velocities, random)
+            return
+        shift = grid_shift(random, scene.dimensions)
+        cells = Cells.sort(self._fluid_positions, shift, self._shape, scene.periodic)
+        if self._width is None:
+            mean = cells.mean_velocity(velocities)
+        else:
+            cut = cut_cells(cells, shift, self._width)
+            mean = mean_with_virtual_particles(velocities, cells, cut, scene.density, random)
+        rotation = scene.rotation if isinstance(scene, Bulk) else "coordinate_axes"
+        collide(velocities, cells, mean, scene.angle, rotation, random)
+
+        if scene.thermostat == "layer":
+            thermostats.layer(velocities, cells)
+        elif scene.thermostat == "monte_carlo":
+            thermostats.monte_carlo(velocities, cells, random)
+        elif scene.thermostat == "rescale":
+            thermostats.rescale(velocities)
+        elif scene.thermostat == "andersen":
+            thermostats.andersen(velocities, scene.collision_time, random)
+        if scene.hydrodynamics == "shuffle":
+            random_solvent.shuffle(velocities, random)
+
+    def _check(self) -> None:
+        """Stop at a fluid particle that is nowhere, or not between the walls."""
+        if not np.isfinite(self._fluid_positions.sum() + self._fluid_velocities.sum()):
+            state = np.concatenate([self._fluid_positions, self._fluid_velocities])
+            lost = np.flatnonzero(~np.isfinite(state).all(axis=0))[0]
+            raise SimulationFault(
+                f"fluid particle {lost} has position {self._fluid_positions[:, lost]} and velocity "
+                f"{self._fluid_velocities[:, lost]}: not a number"
+            )
+        if self._width is not None:
+            y = self._fluid_positions[1]
+            if y.min() < 0 or y.max() > self._width:
+                lost = np.flatnonzero((y < 0) | (y > self._width))[0]
+                raise SimulationFault(
+                    f"fluid particle {lost} is at y = {y[lost]}, beyond a wall (0 to {self._width})"
+                )
+
+
+def _wrap(coordinates: Array, size: float) -> NDArray[np.int64]:
+    """Coordinates into [0, size) in place; the box lengths taken off each."""
+    turns = np.floor(coordinates / size)
+    coordinates -= size * turns
+    coordinates[coordinates >= size] = 0.0  # a negative rounding error was rounded up to the size
+    return turns.astype(np.int64)
