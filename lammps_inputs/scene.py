@@ -26,7 +26,10 @@ class SceneError(ValueError):
 
     def __init__(self, problems: Iterable[str]) -> None:
         self.problems = tuple(problems)
-        super().__init__("\n".join(self.problems))
+        super().__init__(self.problems)  # so that it survives pickling between processes
+
+    def __str__(self) -> str:
+        return "\n".join(self.problems)
 
     @classmethod
     def of_field(cls, field: str, value: object, allowed: str) -> Self:
@@ -81,7 +84,7 @@ class FluidScene(BaseModel):
         try:
             scene = cls(**fields)
         except ValidationError as error:
-            raise SceneError(_problems(error)) from None
+            raise SceneError(cls._field_problems(error)) from None
         problems = list(scene.problems())
         if problems:
             raise SceneError(problems)
@@ -149,6 +152,17 @@ class FluidScene(BaseModel):
         if self.fluid_particles < 2:
             yield f"density = {self.density!r}: leaves {self.fluid_particles} fluid particles"
 
+    @classmethod
+    def _field_problems(cls, error: ValidationError) -> Iterable[str]:
+        for item in error.errors():
+            field = ".".join(str(part) for part in item["loc"]) or "scene"
+            if item["type"] == "extra_forbidden":
+                known = ", ".join(cls.model_fields)
+                yield f"{field} = {item['input']!r}: unknown field; {cls.name} has {known}"
+            else:
+                reason = item["msg"].removeprefix("Value error, ").removeprefix("Input ")
+                yield f"{field} = {item['input']!r}: {reason}"
+
     def toml(self) -> str:
         """The scene as the text of a scene file."""
         return tomli_w.dumps({"scene": self.name, **self.model_dump(exclude_none=True)})
@@ -167,15 +181,3 @@ def parse_assignment(text: str) -> tuple[str, Any]:
         return field.strip(), tomllib.loads(f"value = {value}")["value"]
     except tomllib.TOMLDecodeError:
         return field.strip(), value.strip()
-
-
-def _problems(error: ValidationError) -> Iterable[str]:
-    for item in error.errors():
-        field = ".".join(str(part) for part in item["loc"]) or "scene"
-        if item["type"] == "extra_forbidden":
-            yield f"{field} = {item['input']!r}: unknown field"
-        elif item["type"] == "missing":
-            yield f"{field}: missing"
-        else:
-            reason = item["msg"].removeprefix("Value error, ").removeprefix("Input ")
-            yield f"{field} = {item['input']!r}: {reason}"
