@@ -75,11 +75,13 @@ def sample_steps(scene: Scene) -> int:
 
 
 def fluid_looks(scene: Scene) -> int:
-    """Evenly spaced looks at the fluid that one output averages."""
+    """Evenly spaced looks at the fluid that one output averages, at least two.
+
+    With a single one LAMMPS would also output at the step a run starts from.
+    """
     sample = scene.collisions_per_sample
-    return next(
-        sample // every for every in range(MAX_COLLISIONS_PER_LOOK, 0, -1) if sample % every == 0
-    )
+    longest = min(MAX_COLLISIONS_PER_LOOK, sample // 2)
+    return next(sample // every for every in range(longest, 0, -1) if sample % every == 0)
 
 
 def total_steps(scene: Scene) -> int:
@@ -261,7 +263,7 @@ def _output(scene: Scene, start: Start) -> Iterator[str]:
     yield "variable mean_velocity_x equal vcm(all,x)"
     yield (
         f"fix observables all ave/time {window} v_fluid_temperature v_mean_velocity_x "
-        f"start {start.step + 1} {file} observables.dat"
+        f"{file} observables.dat"
     )
     yield "thermo $(20*v_sample)"
     yield "thermo_style custom step v_fluid_temperature v_mean_velocity_x"

@@ -122,8 +122,11 @@ class FluidScene(BaseModel):
 
     @property
     def collisions_per_sample(self) -> int:
-        """Collisions between two outputs: sampling_interval rounded to whole collisions."""
-        return max(1, round(self.sampling_interval / self.collision_time))
+        """Collisions between two outputs: sampling_interval rounded to whole collisions.
+
+        At least two, so that an output averages at least two looks at the fluid.
+        """
+        return max(2, round(self.sampling_interval / self.collision_time))
 
     @property
     def collisions(self) -> int:
@@ -144,10 +147,10 @@ class FluidScene(BaseModel):
                 )
             if size < 2:
                 yield f"{names[axis]} = {size!r}: at least 2 collision cells are needed"
-        if self.sampling_interval < self.collision_time * (1 - 1e-9):
+        if self.sampling_interval < 2 * self.collision_time * (1 - 1e-9):
             yield (
-                f"sampling_interval = {self.sampling_interval!r}: must be at least the "
-                f"collision_time, {self.collision_time!r}"
+                f"sampling_interval = {self.sampling_interval!r}: must be at least two collision "
+                f"times, {2 * self.collision_time!r}"
             )
         if self.fluid_particles < 2:
             yield f"density = {self.density!r}: leaves {self.fluid_particles} fluid particles"

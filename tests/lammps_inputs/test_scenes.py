@@ -142,7 +142,7 @@ def test_assignments_are_toml_or_plain_words() -> None:
 
 
 @given(
-    sampling=st.floats(0.015, 5),
+    sampling=st.floats(0.03, 5),
     duration=st.floats(0.1, 50),
     equilibration=st.floats(0, 50),
 )
