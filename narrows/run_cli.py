@@ -12,6 +12,7 @@ from lammps_inputs import SCENES, Scene, SceneError, make_scene, parse_assignmen
 from lammps_inputs.deck import Engine, write_deck
 from narrows.messages import say, user_errors
 from srd_driver import RunError, Simulation
+from srd_driver.parallel import agree, communicator
 from srd_driver.run_directory import stored_engine, stored_fields
 
 SceneName = Annotated[str, typer.Argument(metavar="SCENE", help=" or ".join(SCENES))]
@@ -51,12 +52,12 @@ def run(
 ) -> None:
     """Run a scene into a run directory; alone or under mpirun."""
     with user_errors():
-        stored: dict[str, Any] = {}
-        if resume and out.is_dir() and any(out.iterdir()):
-            stored = stored_fields(out)
-            engine = engine or stored_engine(out)
+        stored, engine_before = agree(
+            communicator(), lambda: _stored(out) if resume else ({}, None)
+        )
         chosen = _scene(scene, stored, file, settings)
-        with Simulation(chosen, engine or "srd", out, resume, checkpoint_interval) as simulation:
+        engine = engine or engine_before or "srd"
+        with Simulation(chosen, engine, out, resume, checkpoint_interval) as simulation:
             if simulation.finished:
                 say(f"{out}: finished before, at time {simulation.time:g}")
                 return
@@ -67,6 +68,13 @@ def run(
             else:
                 simulation.finish()
             say(f"{out}: at time {simulation.time:g}; next: narrows analyze {out}")
+
+
+def _stored(directory: Path) -> tuple[dict[str, Any], Engine | None]:
+    """Fields and engine of the run to resume, if there is one."""
+    if not directory.is_dir() or not any(directory.iterdir()):
+        return {}, None
+    return stored_fields(directory), stored_engine(directory)
 
 
 def _scene(
