@@ -82,4 +82,4 @@ def local_zigzag(y: Array) -> Array:
 
 
 def _signs(count: int) -> Array:
-    return 1.0 - 2.0 * (np.arange(count) % 2)
+    return np.asarray(1.0 - 2.0 * (np.arange(count) % 2), dtype=float)

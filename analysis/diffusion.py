@@ -109,7 +109,7 @@ def diffusion(x: Array, velocity: Array, interval: float) -> Diffusion:
     vacfs = np.array([autocorrelation(velocity[cut])[: last + 1] for cut in cuts])
 
     lags = np.unique(np.geomspace(last / 10, last, MIN_LAGS).round().astype(int))
-    times = interval * np.arange(last + 1)
+    times = np.linspace(0, last * interval, last + 1)
     if msds[:, lags].min() <= 0:
         raise ValueError("the colloids do not move about their drift")
 

@@ -1,4 +1,4 @@
-"""Flow of the fluid across a slit: mean profile, parabola, Reynolds number (tabatabaei-2009, 3.2.6).
+"""Flow of the fluid across a slit: profile, parabola, Reynolds number (tabatabaei-2009, 3.2.6).
 
 Profiles come as averages over bins of y and over sampling intervals. Each interval of a bin is
 weighted by the particles it held, so that the mean over time is momentum over mass.
@@ -21,7 +21,9 @@ def momentum_profile(counts: Array, velocity: Array) -> Array:
         (K, bins) [a0/t0]; 0 for a bin that is always empty.
     """
     mean = counts.mean(axis=0)
-    return np.divide(counts * velocity, mean, out=np.zeros_like(velocity), where=mean > 0)
+    return np.asarray(
+        np.divide(counts * velocity, mean, out=np.zeros_like(velocity), where=mean > 0)
+    )
 
 
 def mean_velocity(counts: Array, velocity: Array) -> Array:
@@ -36,7 +38,7 @@ def mean_velocity(counts: Array, velocity: Array) -> Array:
     """
     total = counts.sum(axis=1)
     momentum = (counts * velocity).sum(axis=1)
-    return np.divide(momentum, total, out=np.zeros_like(total), where=total > 0)
+    return np.asarray(np.divide(momentum, total, out=np.zeros_like(total), where=total > 0))
 
 
 def parabola(y: Array, width: float) -> Array:
@@ -53,7 +55,7 @@ def parabola(y: Array, width: float) -> Array:
     low, high = np.clip(y - half, 0, width), np.clip(y + half, 0, width)
     integral = _parabola_integral(high, width) - _parabola_integral(low, width)
     extent = high - low
-    return np.divide(integral, extent, out=np.full_like(y, np.nan), where=extent > 0)
+    return np.asarray(np.divide(integral, extent, out=np.full_like(y, np.nan), where=extent > 0))
 
 
 def _parabola_integral(y: Array, width: float) -> Array:

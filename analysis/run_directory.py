@@ -153,6 +153,15 @@ class RunDirectory:
         return int(self.manifest["equilibration_steps"])
 
     @property
+    def equilibration_time(self) -> float:
+        """Time at the start that averages leave out [t0]."""
+        return self.equilibration_steps * self.time_step
+
+    def times(self, steps: Steps) -> Array:
+        """Time of engine steps [t0]."""
+        return np.asarray(steps * self.time_step, dtype=float)
+
+    @property
     def has_colloids(self) -> bool:
         """Whether the scene has colloids, and so a trajectory."""
         return int(self.manifest["colloids"]) > 0

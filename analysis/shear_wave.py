@@ -29,7 +29,7 @@ def wave_amplitude(y: Array, width: float, counts: Array, velocity: Array) -> Ar
     """
     # the mean of sin(ky) over a bin of width h is sin(ky) at its centre times sinc(kh/2)
     wave = np.sin(2 * np.pi * y / width) * np.sinc((y[1] - y[0]) / width)
-    return momentum_profile(counts, velocity) @ wave / (wave @ wave)
+    return np.asarray(momentum_profile(counts, velocity) @ wave / (wave @ wave))
 
 
 def decay_viscosity(amplitude: Array, interval: float, samples: int, width: float) -> Estimate:

@@ -68,12 +68,11 @@ def _whole_run(run: RunDirectory) -> dict[str, Any]:
     observables = run.observables
     used = _sampled(run, observables.steps)
     temperature = blocking.mean(observables.fluid_temperature[used])
-    last = int(observables.steps[-1])
-    return {
+        return {
         "scene": run.manifest["scene"],
         "engine": run.manifest["engine"],
         "finished": run.finished(),
-        "simulated_time": last * run.time_step,
+        "simulated_time": float(run.times(observables.steps)[-1]),
         "sampled_time": int(used.sum()) * run.interval,
         "frames": int(used.sum()),
         "wall_seconds": run.wall_seconds(),
@@ -100,9 +99,13 @@ def _theory(run: RunDirectory) -> float | str:
         return "a random solvent has no viscosity"
     if run.manifest["dimension"] == 3 and run.field("rotation") != "coordinate_axes":
         return "no equation for 3D rotations about a random axis"
-    fluid = (run.field(name) for name in ("density", "collision_time", "angle"))
     try:
-        return kinematic_viscosity(*fluid, run.manifest["dimension"])
+        return kinematic_viscosity(
+            run.field("density"),
+            run.field("collision_time"),
+            run.field("angle"),
+            run.manifest["dimension"],
+        )
     except ValueError as error:
         return str(error)
 
@@ -173,9 +176,9 @@ def _shear_wave(run: RunDirectory, results: Results) -> None:
     viscosity = decay_viscosity(amplitude[used], run.interval, collisions, width)
     results.summary["viscosity"] = _viscosity_json(viscosity, _theory(run))
     results.figures["shear_wave.png"] = figures.wave_decay(
-        fluid.steps * run.time_step,
+        run.times(fluid.steps),
         amplitude,
-        run.equilibration_steps * run.time_step,
+        run.equilibration_time,
         viscosity,
         width,
     )
@@ -198,10 +201,10 @@ def _colloids(run: RunDirectory, results: Results) -> None:
 
     order = chain.head_order(colloids.positions[0, :, 0], run.field("gravity"))
     x, y = colloids.positions[:, order, 0], colloids.positions[:, order, 1]
-    times = colloids.steps * run.time_step
+    times = run.times(colloids.steps)
     _diffusion(run, results, x[used], colloids.velocities[used][:, order, 0])
     results.figures["space_time.png"] = figures.space_time(
-        times, x, run.field("length"), run.equilibration_steps * run.time_step
+        times, x, run.field("length"), run.equilibration_time
     )
     if len(order) >= 2:
         _spacings(run, results, x, used)
@@ -220,7 +223,7 @@ def _settling(run: RunDirectory, results: Results) -> None:
     results.summary["settling_speed"] = blocking.mean(moving[used]).as_json()
     results.summary["settling_speed_rest"] = blocking.mean(rest[used]).as_json()
     results.figures["settling_speed.png"] = figures.settling(
-        steps * run.time_step, rest, moving, run.equilibration_steps * run.time_step
+        run.times(steps), rest, moving, run.equilibration_time
     )
 
 
@@ -252,7 +255,7 @@ def _spacings(run: RunDirectory, results: Results, x: Array, used: NDArray[np.bo
     }
     if groups.shape[1]:
         results.figures["spacings.png"] = figures.spacings(
-            run.colloids.steps * run.time_step, groups, run.equilibration_steps * run.time_step
+            run.times(run.colloids.steps), groups, run.equilibration_time
         )
 
 
@@ -267,10 +270,10 @@ def _zigzag(run: RunDirectory, results: Results, y: Array, used: NDArray[np.bool
         "local_rms": np.sqrt((local[used] ** 2).mean(axis=0)).tolist(),
     }
     results.figures["zigzag.png"] = figures.zigzag(
-        run.colloids.steps * run.time_step,
+        run.times(run.colloids.steps),
         amplitude,
         local,
-        run.equilibration_steps * run.time_step,
+        run.equilibration_time,
     )
 
 
