@@ -14,7 +14,7 @@ from numpy.typing import ArrayLike, NDArray
 Array = NDArray[np.float64]
 
 MIN_BLOCKS = 6  # an error from m blocks is itself uncertain by 1/sqrt(2(m - 1)): 32 % with 6
-MIN_BLOCK_LENGTH = 3  # in statistical inefficiencies: the error is then at most 11 % too small
+MIN_BLOCK_LENGTH = 2  # in measured inefficiencies g: the error is then at most 20 % too small
 
 
 @dataclass(frozen=True)

@@ -17,6 +17,7 @@ Array = NDArray[np.float64]
 
 SEGMENTS = 8  # of the sampled time, for the jackknife
 MIN_LAGS = 10  # in the last decade of lags, from a tenth of a segment's quarter to the quarter
+SIGNIFICANT = 3  # errors; 8 segments leave heavy tails: random walks exceed 2 in one of 10 runs
 RESOLVED_DECAY = 0.5  # the trapezoid rule is then at most 4 % off for an exponential VACF
 
 
@@ -65,7 +66,7 @@ class Diffusion:
         vacf: velocity autocorrelation, (lags,) [a0^2/t0^2].
         window: first and last time of the fits [t0].
         exponent: of msd ~ t^exponent in the window.
-        subdiffusive: whether the exponent is below 1 by more than two of its errors.
+        subdiffusive: whether the exponent is below 1 by more than three of its errors.
         from_msd: D, half the slope of the MSD in the window [a0^2/t0]; None unless diffusive.
         from_vacf: D, the integral of the VACF to the window's end [a0^2/t0]; None unless
             diffusive and resolved in time.
@@ -86,8 +87,8 @@ def diffusion(x: Array, velocity: Array, interval: float) -> Diffusion:
 
     The sampled time is cut into 8 segments; lags go to a quarter of a segment, and the exponent
     and D are fitted in the last decade of lags. Errors are the jackknife over segments. The drift
-    is one velocity, subtracted from every colloid: a lag t then loses at most a fraction
-    t / (sampled time) of its MSD, 3 % at the longest.
+    is one velocity, subtracted from every colloid: a lag t then loses a fraction
+    t / (sampled time) of the MSD of a single colloid, 3 % at the longest, and less of many.
 
     Args:
         x: unwrapped positions along x, (T, N) [a0].
@@ -125,7 +126,7 @@ def diffusion(x: Array, velocity: Array, interval: float) -> Diffusion:
     exponent = _jackknife(exponent_of, msds)
     assert exponent.value is not None
     assert exponent.error is not None
-    subdiffusive = exponent.value < 1 - 2 * exponent.error
+    subdiffusive = exponent.value < 1 - SIGNIFICANT * exponent.error
     from_msd, from_vacf = _jackknife(half_slope, msds), _jackknife(integral, vacfs)
     vacf = vacfs.mean(axis=0)
     if vacf[1] < RESOLVED_DECAY * vacf[0]:
@@ -133,7 +134,7 @@ def diffusion(x: Array, velocity: Array, interval: float) -> Diffusion:
         from_vacf = Estimate(None, None, reason)
     if subdiffusive:
         from_msd = from_vacf = Estimate(None, None, "subdiffusive")
-    elif exponent.value > 1 + 2 * exponent.error:
+    elif exponent.value > 1 + SIGNIFICANT * exponent.error:
         from_msd = from_vacf = Estimate(None, None, "superdiffusive: the drift is not uniform")
     window = (float(times[lags[0]]), float(times[lags[-1]]))
     return Diffusion(

@@ -3,6 +3,7 @@
 import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
+from matplotlib.ticker import MaxNLocator
 from numpy.typing import NDArray
 
 from analysis.blocking import Estimate
@@ -118,10 +119,17 @@ def zigzag(times: Array, amplitude: Array, local: Array, equilibration: float) -
     above.set_ylabel("zigzag amplitude [$a_0$]")
     _mark_equilibration(above, equilibration)
     limit = float(np.abs(local).max()) or 1.0
-    colloids = np.arange(2, local.shape[1] + 2)
-    image = below.pcolormesh(
-        times, colloids, local.T, cmap="RdBu_r", vmin=-limit, vmax=limit, rasterized=True
+    image = below.imshow(
+        local.T,
+        extent=(times[0], times[-1], 1.5, local.shape[1] + 1.5),
+        origin="lower",
+        aspect="auto",
+        interpolation="none",
+        cmap="RdBu_r",
+        vmin=-limit,
+        vmax=limit,
     )
+    below.yaxis.set_major_locator(MaxNLocator(integer=True))
     below.set_ylabel("colloid, 1 is the head")
     below.set_xlabel(TIME)
     figure.colorbar(image, ax=below, label="local zigzag [$a_0$]")

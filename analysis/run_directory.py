@@ -148,6 +148,12 @@ class RunDirectory:
         return float(self.manifest["sample_steps"]) * self.time_step
 
     @property
+    def fluid_looks(self) -> int:
+        """Evenly spaced samples in each average of the fluid; one a collision unless stated."""
+        collisions = self.manifest["sample_steps"] // self.manifest["steps_per_collision"]
+        return int(self.manifest.get("fluid_looks", max(1, collisions)))
+
+    @property
     def equilibration_steps(self) -> int:
         """Engine steps at the start that averages leave out."""
         return int(self.manifest["equilibration_steps"])

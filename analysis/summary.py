@@ -68,7 +68,7 @@ def _whole_run(run: RunDirectory) -> dict[str, Any]:
     observables = run.observables
     used = _sampled(run, observables.steps)
     temperature = blocking.mean(observables.fluid_temperature[used])
-        return {
+    return {
         "scene": run.manifest["scene"],
         "engine": run.manifest["engine"],
         "finished": run.finished(),
@@ -131,9 +131,11 @@ def _slit_flow(run: RunDirectory, results: Results) -> None:
             raise RunDirectoryError(f"{run.path / 'fluid_profile.dat'}: {error}") from None
         fit = (float(v_max.mean()), float(v_wall.mean()))
         maximum = blocking.mean(v_max)
-        viscosity = _viscosity_from_maximum(maximum, gravity, width)
+        viscosity = _poiseuille_viscosity(maximum, gravity, width)
+        curvature = _poiseuille_viscosity(blocking.mean(v_max - v_wall), gravity, width)
         results.summary["maximum_velocity"] = maximum.as_json()
         results.summary["viscosity"] = _viscosity_json(viscosity, theory)
+        results.summary["viscosity_curvature"] = curvature.as_json()
         results.summary["wall_slip"] = _ratio(v_wall, v_max).scaled(100).as_json()
     mean_velocity = blocking.mean(flow.mean_velocity(counts, velocity))
     if isinstance(theory, str):
@@ -146,8 +148,11 @@ def _slit_flow(run: RunDirectory, results: Results) -> None:
     results.figures["profile.png"] = figures.profile(fluid.y, mean_profile, width, fit)
 
 
-def _viscosity_from_maximum(maximum: Estimate, gravity: float, width: float) -> Estimate:
-    """nu = g L_y^2 / (8 v_max), tabatabaei-2009 (3.15), with the error of v_max carried over."""
+def _poiseuille_viscosity(maximum: Estimate, gravity: float, width: float) -> Estimate:
+    """nu = g L_y^2 / (8 v_max), tabatabaei-2009 (3.15), with the error of v_max carried over.
+
+    With v_max counted from the velocity at the walls it is nu = -g / v_x'', right with slip too.
+    """
     assert maximum.value is not None
     if gravity == 0:
         return Estimate(None, None, "no gravity")
@@ -172,8 +177,7 @@ def _shear_wave(run: RunDirectory, results: Results) -> None:
     fluid, width = run.fluid_profile, run.field("width")
     used = _sampled(run, fluid.steps)
     amplitude = wave_amplitude(fluid.y, width, fluid.counts, fluid.velocity_x)
-    collisions = run.manifest["sample_steps"] // run.manifest["steps_per_collision"]
-    viscosity = decay_viscosity(amplitude[used], run.interval, collisions, width)
+    viscosity = decay_viscosity(amplitude[used], run.interval, run.fluid_looks, width)
     results.summary["viscosity"] = _viscosity_json(viscosity, _theory(run))
     results.figures["shear_wave.png"] = figures.wave_decay(
         run.times(fluid.steps),
