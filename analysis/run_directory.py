@@ -98,7 +98,8 @@ class RunDirectory:
             self._require(key in self.manifest, key, "is missing")
         self._require(isinstance(self.manifest["fields"], dict), "fields", "is not a table")
         self._require(self.manifest["dimension"] in (2, 3), "dimension", "must be 2 or 3")
-        for key in MANIFEST_COUNTS:
+        optional = ("fluid_looks",) if "fluid_looks" in self.manifest else ()
+        for key in MANIFEST_COUNTS + optional:
             value = self.manifest.get(key)
             self._require(isinstance(value, int) and value > 0, key, "must be a positive integer")
         equilibration = self.manifest.get("equilibration_steps")
@@ -251,19 +252,20 @@ class RunDirectory:
         """
         name = "trajectory.lammpsdump"
         self._require_file(name)
-        try:
-            with warnings.catch_warnings():
-                warnings.filterwarnings("ignore", message="Guessed all Masses")
+        with warnings.catch_warnings():
+            warnings.filterwarnings("ignore", message="Guessed all Masses")
+            warnings.filterwarnings("ignore", message="Some of the additional columns")
+            try:
                 universe = MDAnalysis.Universe(
                     str(self.path / name),
                     dt=self.time_step,
                     additional_columns=["ix", "iy", "iz"],
                 )
-        except (OSError, ValueError, IndexError, EOFError, KeyError):
-            raise RunDirectoryError(
-                f"{self.path / name}: no complete frame MDAnalysis can read"
-            ) from None
-        first = universe.trajectory[0]
+                first = universe.trajectory[0]
+            except (OSError, ValueError, IndexError, EOFError, KeyError):
+                raise RunDirectoryError(
+                    f"{self.path / name}: no complete frame MDAnalysis can read"
+                ) from None
         if not first.has_velocities or not {"ix", "iy", "iz"} <= first.data.keys():
             raise RunDirectoryError(
                 f"{self.path / name}: the columns must be id type x y z vx vy vz ix iy iz"
@@ -312,7 +314,7 @@ class RunDirectory:
             warnings.simplefilter("error", DeprecationWarning)
             try:
                 numbers = np.fromstring(data, sep=" ") if data else np.empty(0)
-            except DeprecationWarning:
+            except (ValueError, DeprecationWarning):  # which one depends on numpy's version
                 raise RunDirectoryError(f"{self.path / name}: holds text among numbers") from None
         if not np.all(np.isfinite(numbers)):
             raise RunDirectoryError(f"{self.path / name}: holds numbers that are not finite")

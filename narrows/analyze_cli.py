@@ -31,7 +31,8 @@ def analyze(
     console = Console()
     console.print(table)
     files = ["summary.json", *summary["figures"]]
-    console.print(f"written to {directory}: {', '.join(files)}", highlight=False, markup=False)
+    files_line = f"written to {directory}: {', '.join(files)}"
+    console.print(files_line, highlight=False, markup=False, soft_wrap=True)
 
 
 def _estimates(summary: dict[str, Any], prefix: str = "") -> list[tuple[str, dict[str, Any]]]:

@@ -27,7 +27,7 @@ BULK = {key: POISEUILLE[key] for key in POISEUILLE if key != "gravity"} | {
 }
 
 
-def write_manifest(path: Path, scene: str, fields: dict[str, Any], **changes: Any) -> None:
+def write_manifest(path: Path, scene: str, fields: dict[str, Any], /, **changes: Any) -> None:
     """time step 0.1, output every 10 steps (t = 1), equilibration 50 steps (t = 5)."""
     path.mkdir(exist_ok=True)
     colloids = changes.get("colloids", 0)
@@ -41,7 +41,7 @@ def write_manifest(path: Path, scene: str, fields: dict[str, Any], **changes: An
         "steps_per_collision": 1,
         "sample_steps": 10,
         "equilibration_steps": 50,
-        "total_steps": 1000,
+        "total_steps": 20_000,
         "fluid_particles": 4000,
         "colloids": colloids,
         "colloid_mass": 100.0 if colloids else None,
