@@ -129,7 +129,7 @@ def zigzag(times: Array, amplitude: Array, local: Array, equilibration: float) -
         vmin=-limit,
         vmax=limit,
     )
-    below.yaxis.set_major_locator(MaxNLocator(integer=True))
+    below.yaxis.set_major_locator(MaxNLocator(integer=True, min_n_ticks=1))
     below.set_ylabel("colloid, 1 is the head")
     below.set_xlabel(TIME)
     figure.colorbar(image, ax=below, label="local zigzag [$a_0$]")

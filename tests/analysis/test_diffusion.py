@@ -80,6 +80,8 @@ def test_both_coefficients_agree_when_the_vacf_is_resolved():
     random = np.random.default_rng(3)
     relaxation = 5.0
     x, velocity = ornstein_uhlenbeck(random, 40_000, 10, relaxation)
+    drift = 0.5
+    x, velocity = x + drift * np.arange(len(x))[:, None], velocity + drift
     found = diffusion(x, velocity, 1.0)
     expected = 0.5 / math.tanh(0.5 / relaxation)  # the trapezoid sum of exp(-t / relaxation)
     assert found.from_vacf.error < 0.15 * expected

@@ -53,6 +53,15 @@ def test_empty_intervals_carry_no_weight():
     assert v_wall.mean() == pytest.approx(0.0, abs=1e-12)
 
 
+def test_bins_weigh_as_much_as_they_hold():
+    y = half_cells(WIDTH)
+    velocity = np.tile(bin_means(y, 0.3, 0.0), (2, 1))
+    counts = np.full_like(velocity, 50.0)
+    velocity[:, 9], counts[:, 9] = 9.0, 1e-6
+    v_max, _ = flow.fit_parabola(y, WIDTH, counts, velocity)
+    assert v_max == pytest.approx([0.3, 0.3], rel=1e-6)
+
+
 def test_mean_velocity_is_weighted_by_particles():
     counts, velocity = np.array([[1.0, 3.0], [0.0, 0.0]]), np.array([[4.0, 8.0], [0.0, 0.0]])
     assert flow.mean_velocity(counts, velocity).tolist() == [7.0, 0.0]

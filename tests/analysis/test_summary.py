@@ -123,6 +123,7 @@ def bulk(path, **fields):
     times = np.arange(1, 201)
     random = np.random.default_rng(2)
     wave = 0.1 * np.exp(-rate * times)[:, None] * np.sin(2 * np.pi * y / 32)
+    wave[:5] *= 2  # in the equilibration
     velocity = wave + 1e-4 * random.normal(size=wave.shape)
     write_manifest(path, "bulk", BULK | fields, fluid_looks=1)
     write_profile(path, y, np.full_like(velocity, 160.0), velocity)
@@ -157,13 +158,14 @@ def test_3d_theory(tmp_path):
 
 
 def channel(path, frames=601, colloids=7, mass=100.0):
-    """Random walkers with a drift of 0.03 in a fluid whose whole moves at 0.01; a zigzag of 0.5."""
+    """Random walkers with a drift of 0.03 in a fluid whose whole moves at 0.01; a zigzag of 0.2."""
     random = np.random.default_rng(3)
     times = np.arange(frames)[:, None]
     start = 5.0 * (np.arange(colloids) + 0.5)
+    start[-1] += 2.0
     x = start + 0.03 * times + np.cumsum(0.02 * random.normal(size=(frames, colloids)), axis=0)
     x[5:] += 3.0  # a jump within the equilibration does not count
-    y = 5 + 0.5 * (-1.0) ** np.arange(colloids) + 0.01 * random.normal(size=(frames, colloids))
+    y = 5 + 0.2 * (-1.0) ** np.arange(colloids) + 0.01 * random.normal(size=(frames, colloids))
     velocities = [0.03, 0.0] + random.normal(size=(frames, colloids, 2)) / math.sqrt(mass)
     mean_velocity = 0.01 + 0.001 * random.normal(size=frames - 1)
     write_channel(path, np.stack([x, y], axis=2), velocities, mean_velocity, total_steps=6000)
@@ -180,14 +182,18 @@ def test_channel(tmp_path):
     diffusion = summary["diffusion"]
     assert abs(diffusion["value"] - 0.02**2 / 2) < 4 * diffusion["error"]
     assert not diffusion["subdiffusive"]
-    assert summary["zigzag"]["amplitude_rms"]["value"] == pytest.approx(0.5, rel=0.01)
-    assert summary["zigzag"]["displacement_rms"] == pytest.approx(0.5, rel=0.01)
-    assert summary["zigzag"]["uncorrelated_rms"] == pytest.approx(0.5 / math.sqrt(7), rel=0.01)
-    assert summary["zigzag"]["local_rms"] == pytest.approx([0.5] * 5, rel=0.01)
+    zigzag = summary["zigzag"]
+    assert zigzag["amplitude_rms"]["value"] == pytest.approx(0.2, rel=0.01)
+    assert zigzag["amplitude_rms"]["error"] == pytest.approx(0.01 / math.sqrt(7 * 595), rel=0.4)
+    assert zigzag["displacement_rms"] == pytest.approx(0.2, rel=0.01)
+    assert zigzag["uncorrelated_rms"] == pytest.approx(0.2 / math.sqrt(7), rel=0.01)
+    assert zigzag["local_rms"] == pytest.approx([0.2] * 5, rel=0.01)
     spacings = summary["spacings"]
-    assert len(spacings["neighbours"]) == 6
+    # each walks by 0.02 sqrt(2 * 600) = 0.7 at most against its neighbour, head first
+    assert spacings["neighbours"] == pytest.approx([7.0, 5.0, 5.0, 5.0, 5.0, 5.0], abs=1.9)
+    assert spacings["neighbours"][0] == max(spacings["neighbours"])
     assert len(spacings["groups"]) == 1
-    assert spacings["groups_initial"] == pytest.approx([5.0], abs=0.05)
+    assert spacings["groups_initial"] == pytest.approx([(7.0 + 4 * 5.0) / 5], abs=0.05)
     assert spacings["left_out_at_tail"] == 1
     assert summary["pair_correlation"]["bin_width"] == pytest.approx(0.1)
     assert summary["figures"] == [
