@@ -138,6 +138,17 @@ class RunDirectory:
         self._require(name in fields, f"fields.{name}", "is missing")
         return fields[name]
 
+    def number(self, name: str) -> float:
+        """A field of the scene that is a number.
+
+        Raises:
+            RunDirectoryError: when the manifest does not have it, or it is none.
+        """
+        value = self.field(name)
+        is_number = isinstance(value, int | float) and math.isfinite(value)
+        self._require(is_number, f"fields.{name}", "must be a number")
+        return float(value)
+
     @property
     def time_step(self) -> float:
         """Time of one engine step [t0]."""
@@ -263,9 +274,7 @@ class RunDirectory:
                 )
                 first = universe.trajectory[0]
             except (OSError, ValueError, IndexError, EOFError, KeyError):
-                raise RunDirectoryError(
-                    f"{self.path / name}: no complete frame MDAnalysis can read"
-                ) from None
+                raise RunDirectoryError(f"{self.path / name}: no complete frame yet") from None
         if not first.has_velocities or not {"ix", "iy", "iz"} <= first.data.keys():
             raise RunDirectoryError(
                 f"{self.path / name}: the columns must be id type x y z vx vy vz ix iy iz"
@@ -286,6 +295,8 @@ class RunDirectory:
         with (self.path / name).open("rb") as file:
             lines = sum(chunk.count(b"\n") for chunk in iter(lambda: file.read(1 << 20), b""))
         frames = lines // (universe.atoms.n_atoms + 9)
+        if frames == 0:
+            raise RunDirectoryError(f"{self.path / name}: no complete frame yet")
         walk = ColloidTrajectory(universe, self.manifest["dimension"])
         try:
             results = walk.run(stop=frames).results

@@ -50,7 +50,7 @@ def analyze(directory: Path) -> dict[str, Any]:
     run = RunDirectory(directory)
     results = Results(_whole_run(run))
     if run.manifest["scene"] == "bulk":
-        if run.field("shear_wave") > 0:
+        if run.number("shear_wave") > 0:
             _shear_wave(run, results)
     else:
         _slit_flow(run, results)
@@ -101,9 +101,9 @@ def _theory(run: RunDirectory) -> float | str:
         return "no equation for 3D rotations about a random axis"
     try:
         return kinematic_viscosity(
-            run.field("density"),
-            run.field("collision_time"),
-            run.field("angle"),
+            run.number("density"),
+            run.number("collision_time"),
+            run.number("angle"),
             run.manifest["dimension"],
         )
     except ValueError as error:
@@ -119,12 +119,12 @@ def _viscosity_json(viscosity: Estimate, theory: float | str) -> dict[str, Any]:
 
 def _slit_flow(run: RunDirectory, results: Results) -> None:
     """Profile and Reynolds number; where gravity drives the fluid, the parabola's viscosity."""
-    fluid, width, theory = run.fluid_profile, run.field("width"), _theory(run)
+    fluid, width, theory = run.fluid_profile, run.number("width"), _theory(run)
     used = _sampled(run, fluid.steps)
     counts, velocity = fluid.counts[used], fluid.velocity_x[used]
     fit = None
     if run.manifest["scene"] == "poiseuille":
-        gravity = run.field("gravity")
+        gravity = run.number("gravity")
         try:
             v_max, v_wall = flow.fit_parabola(fluid.y, width, counts, velocity)
         except ValueError as error:
@@ -174,7 +174,7 @@ def _ratio(numerator: Array, denominator: Array) -> Estimate:
 
 
 def _shear_wave(run: RunDirectory, results: Results) -> None:
-    fluid, width = run.fluid_profile, run.field("width")
+    fluid, width = run.fluid_profile, run.number("width")
     used = _sampled(run, fluid.steps)
     amplitude = wave_amplitude(fluid.y, width, fluid.counts, fluid.velocity_x)
     viscosity = decay_viscosity(amplitude[used], run.interval, run.fluid_looks, width)
@@ -203,12 +203,12 @@ def _colloids(run: RunDirectory, results: Results) -> None:
     temperature = blocking.mean(colloid_temperature(colloids.velocities[used], mass))
     results.summary["colloid_temperature"] = temperature.as_json()
 
-    order = chain.head_order(colloids.positions[0, :, 0], run.field("gravity"))
+    order = chain.head_order(colloids.positions[0, :, 0], run.number("gravity"))
     x, y = colloids.positions[:, order, 0], colloids.positions[:, order, 1]
     times = run.times(colloids.steps)
     _diffusion(run, results, x[used], colloids.velocities[used][:, order, 0])
     results.figures["space_time.png"] = figures.space_time(
-        times, x, run.field("length"), run.equilibration_time
+        times, x, run.number("length"), run.equilibration_time
     )
     if len(order) >= 2:
         _spacings(run, results, x, used)
@@ -264,7 +264,7 @@ def _spacings(run: RunDirectory, results: Results, x: Array, used: NDArray[np.bo
 
 
 def _zigzag(run: RunDirectory, results: Results, y: Array, used: NDArray[np.bool_]) -> None:
-    width = run.field("width")
+    width = run.number("width")
     amplitude, local = chain.zigzag_amplitude(y, width), chain.local_zigzag(y)
     displacement = float(np.sqrt(((y[used] - width / 2) ** 2).mean()))
     results.summary["zigzag"] = {
@@ -292,7 +292,7 @@ def _root(square: Estimate) -> Estimate:
 
 
 def _pair_correlation(run: RunDirectory, results: Results, x: Array) -> None:
-    distance, g = pair_correlation(x, run.field("length"), BIN_WIDTH)
+    distance, g = pair_correlation(x, run.number("length"), BIN_WIDTH)
     peak = int(np.argmax(g))
     results.summary["pair_correlation"] = {
         "peak_position": float(distance[peak]),
@@ -300,7 +300,7 @@ def _pair_correlation(run: RunDirectory, results: Results, x: Array) -> None:
         "bin_width": float(distance[1] - distance[0]),
     }
     results.figures["pair_correlation.png"] = figures.pair_correlation(
-        distance, g, 2 * run.field("colloid_radius")
+        distance, g, 2 * run.number("colloid_radius")
     )
 
 

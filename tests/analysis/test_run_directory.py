@@ -207,14 +207,27 @@ def test_malformed_file(channel, name, old, new, message):
         ("observables.dat", 2, "no complete sampling interval yet"),
         ("fluid_profile.dat", 3, "no complete sampling interval yet"),
         ("fluid_profile.dat", 10, "no complete sampling interval yet"),
-        ("trajectory.lammpsdump", 0, "no complete frame MDAnalysis can read"),
-        ("trajectory.lammpsdump", 11, "no complete frame MDAnalysis can read"),
+        ("trajectory.lammpsdump", 0, "no complete frame yet"),
+        ("trajectory.lammpsdump", 11, "no complete frame yet"),
     ],
 )
 def test_run_that_has_only_begun(channel, name, lines, message):
     file = channel / name
     file.write_text("".join(file.read_text().splitlines(keepends=True)[:lines]))
     assert refused(channel) == f"{name}: {message}"
+
+
+def test_first_frame_cut_within_its_last_line(channel):
+    file = channel / "trajectory.lammpsdump"
+    file.write_text("".join(file.read_text().splitlines(keepends=True)[:12])[:-1])
+    assert refused(channel) == "trajectory.lammpsdump: no complete frame yet"
+
+
+@pytest.mark.parametrize("value", ["ten", None, float("nan")])
+def test_field_that_must_be_a_number(channel, value):
+    write_manifest(channel, "channel", CHANNEL | {"width": value}, colloids=3)
+    with pytest.raises(RunDirectoryError, match=r"manifest.json: fields.width must be a number"):
+        RunDirectory(channel).number("width")
 
 
 DECK = """
