@@ -34,20 +34,20 @@ def stream(
         width: distance between the walls [a0]; None: no walls.
     """
     end = positions + time * (velocities + 0.5 * time * acceleration)
+    end_velocities = velocities + time * acceleration
     if width is not None:
         crossing = np.flatnonzero((end[1] < 0) | (end[1] > width))
-        bounced = bounce_back(
-            positions[:, crossing],
-            velocities[:, crossing],
-            np.broadcast_to(acceleration, positions.shape)[:, crossing],
-            time,
-            width,
-            crossing,
-        )
+        if crossing.size:
+            end[:, crossing], end_velocities[:, crossing] = bounce_back(
+                positions[:, crossing],
+                velocities[:, crossing],
+                np.broadcast_to(acceleration, positions.shape)[:, crossing],
+                time,
+                width,
+                crossing,
+            )
     positions[:] = end
-    velocities += time * acceleration
-    if width is not None:
-        positions[:, crossing], velocities[:, crossing] = bounced
+    velocities[:] = end_velocities
 
 
 def bounce_back(
