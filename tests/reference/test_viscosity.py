@@ -6,7 +6,6 @@ python -m pytest -m statistics -s tests/reference/test_viscosity.py
 import math
 
 import numpy as np
-import pytest
 
 from lammps_inputs import Bulk
 from lammps_inputs.viscosity import viscosity
