@@ -93,8 +93,8 @@ def bounce_back(
         v = -(v + contact * a)
         left = left - contact
     raise SimulationFault(
-        f"fluid particle {names[flying[0]]} meets the walls more than {MOST_BOUNCES} times in one "
-        "step: it is too fast, or pressed against a wall"
+        f"fluid particle {names[flying[0]]} meets the walls more than {MOST_BOUNCES} times in "
+        "one step: it is too fast, or pressed against a wall"
     )
 
 
