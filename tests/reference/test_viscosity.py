@@ -32,14 +32,17 @@ GRID: list[Point] = [
 
 
 def bulk(point: Point) -> Bulk:
-    """A wave long enough, and slow enough, for corrections in k and shear rate below the errors."""
+    """A wave long enough, and slow enough, for corrections in k and shear rate below the errors.
+
+    No longer along x than across, which keeps the shear wave stable.
+    """
     dimension, rotation, density, angle, collision_time = point
     kinetic = collision_time >= 0.5
     return Bulk.make(
         dimension=dimension,
         rotation=rotation,
-        length=32 if dimension == 2 else 12,
-        width=64 if kinetic else 48 if dimension == 2 else 24,
+        length=24 if dimension == 2 else 12,
+        width=48 if kinetic else 24,
         height=None if dimension == 2 else 12,
         density=density,
         angle=angle,

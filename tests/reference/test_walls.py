@@ -37,7 +37,7 @@ def test_mean_with_virtual_particles_by_hand() -> None:
         velocities, Cells((3, 1), numbers), np.array([True, False, True]), 4.0, random
     )
     zeta = np.sqrt(3) * random.normal(Stream.WALL, 3)[:2, 0]
-    np.testing.assert_allclose(mean[:, 0], (zeta + [4, 0]) / 4, rtol=1e-15)
+    np.testing.assert_allclose(mean[:, 0], (np.array([4, 0]) + zeta) / 4, rtol=1e-15)
     np.testing.assert_allclose(mean[:, 1:], [[2, 1], [2, 1]], rtol=1e-15)
 
 
