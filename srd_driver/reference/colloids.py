@@ -131,8 +131,8 @@ class ColloidForces:
                 f"colloid {outside[0]} is at y = {y}, through a wall: the time step "
                 f"{scene.time_step:g} is too long for its wall potential, or the walls too weak"
             )
-        wall = scene.colloid_wall
-        on_colloids[1] += wall.force(lower) - wall.force(upper)
+        from_lower, from_upper = scene.colloid_wall.force([lower, upper])
+        on_colloids[1] += from_lower - from_upper
         return on_fluid, on_colloids
 
     def energy(self, fluid_positions: Array, colloid_positions: Array) -> float:
@@ -161,7 +161,10 @@ class ColloidForces:
 
 def _sums(indices: Indices, forces: Array, count: int) -> Array:
     """Forces (2, pairs) summed for each particle (2, count)."""
-    return np.stack([np.bincount(indices, weights=force, minlength=count) for force in forces])
+    sums = np.empty((2, count))
+    for axis, force in enumerate(forces):
+        sums[axis] = np.bincount(indices, weights=force, minlength=count)
+    return sums
 
 
 def _nearest_image(

@@ -39,6 +39,7 @@ class ReferenceEngine:
         state = state or initial_state(scene)
         self.scene = scene
         self.collisions = 0
+        self._step = 0
         self._fluid_positions = np.array(state.fluid_positions.T, order="C")
         self._fluid_velocities = np.array(state.fluid_velocities.T, order="C")
         self._colloid_positions = np.array(state.colloid_positions.T, order="C")
@@ -85,7 +86,9 @@ class ReferenceEngine:
         Raises:
             SimulationFault: naming the particle and the step, when the state is broken.
         """
+        self._step = self.collisions * self.scene.steps_per_collision
         try:
+            self._check()
             for _ in range(collisions):
                 if self._coupling is None:
                     self._stream()
@@ -167,8 +170,8 @@ class ReferenceEngine:
         )
 
     def _stream(self) -> None:
-        """Free flight for tau_c, or one MD step of the fluid where there is no MD (3.3)."""
-        self._step = self.collisions + 1
+        """Free flight of the fluid for tau_c (3.3)."""
+        self._step += 1
         stream(
             self._fluid_positions,
             self._fluid_velocities,
@@ -180,7 +183,6 @@ class ReferenceEngine:
     def _molecular_dynamics(self, coupling: ColloidForces) -> None:
         """Velocity Verlet of colloids and fluid through tau_c (3.45, 3.46, 3.51, 3.52)."""
         time = self.scene.time_step
-        self._step = self.collisions * self.scene.steps_per_collision
         self._find_pairs(coupling)
         fluid, colloids = self._accelerations(coupling)
         for _ in range(self.scene.steps_per_collision):

@@ -1,0 +1,115 @@
+"""Viscosity of the bulk fluid against kinetic theory, over density, angle and mean free path.
+
+    python -m pytest -m statistics -s tests/reference/test_viscosity.py
+
+Theory assumes molecular chaos: that the particles which meet in a cell are uncorrelated. Redrawing
+all coordinates but y, uniformly, before each collision leaves the mean flow v_x(y) as it is and
+enforces the assumption, so it tests the engine against theory. What the fluid itself then has
+besides is the failure of the assumption.
+"""
+
+import math
+from itertools import product
+
+import numpy as np
+import pytest
+
+from lammps_inputs import Bulk
+from lammps_inputs.scene import Rotation
+from lammps_inputs.viscosity import viscosity
+from srd_driver.reference import ReferenceEngine
+
+SEED = 1
+ERROR = 0.0045  # relative standard error that a run is made long enough for
+KICK_INTERVAL = 5  # collisions; longer than the memory of the stress
+
+Point = tuple[int, Rotation, float, float, float]  # dimension, rotation, n_f, alpha, tau_c
+GRID: list[Point] = [
+    *product((2,), ("coordinate_axes",), (3, 10), (60, 90, 130), (0.05, 0.2, 1.0)),
+    *product((3,), ("coordinate_axes",), (3, 10), (90,), (0.05, 0.2, 1.0)),
+    *product((3,), ("random_axis",), (10,), (60, 130), (0.05, 0.2, 1.0)),
+]
+
+
+def bulk(point: Point) -> Bulk:
+    """A wave long enough, and slow enough, for corrections in k and shear rate below the errors.
+
+    No longer along x than across, which keeps the shear wave stable.
+    """
+    dimension, rotation, density, angle, collision_time = point
+    kinetic = collision_time >= 0.5
+    return Bulk.make(
+        dimension=dimension,
+        rotation=rotation,
+        length=24 if dimension == 2 else 12,
+        width=48 if kinetic else 24,
+        height=None if dimension == 2 else 12,
+        density=density,
+        angle=angle,
+        collision_time=collision_time,
+        shear_wave=0.5 if kinetic else 1.0,
+        thermostat="layer",
+        sampling_interval=collision_time,
+        seed=SEED,
+    )
+
+
+def measured_viscosity(engine: ReferenceEngine, chaos: bool = False) -> tuple[float, float]:
+    """Viscosity over that of theory, and its standard error; molecular chaos enforced or not.
+
+    Kicks keep a shear wave at its amplitude A. With a = (2 / N) sum v_x sin(k y), one interval is
+    a' = exp(-nu k^2 Delta) (a + kick) + xi, xi the white thermal noise. Its regression gives nu;
+    the error is that of the block sums of the residuals. The run is as long as theory says that
+    the error takes: 4 / (N A^2 nu k^2 error^2).
+    """
+    scene = engine.scene
+    assert isinstance(scene, Bulk)
+    random = np.random.default_rng(scene.seed)
+    across = [0] if scene.dimension == 2 else [0, 2]
+    k = 2 * np.pi / scene.width
+    interval = KICK_INTERVAL * scene.collision_time
+    theory = k**2 * viscosity(
+        scene.density, scene.collision_time, scene.angle, scene.dimension, scene.rotation
+    )
+    kick = scene.shear_wave * math.expm1(theory * interval)
+    duration = 4 / (scene.fluid_particles * scene.shear_wave**2 * theory * ERROR**2)
+
+    def advance() -> None:
+        for _ in range(KICK_INTERVAL):
+            if chaos:
+                engine.fluid_positions[:, across] = np.array(scene.box)[across] * random.random(
+                    (scene.fluid_particles, len(across))
+                )
+            engine.advance(1)
+
+    for _ in range(4):
+        advance()
+    before, after = [], []
+    for _ in range(math.ceil(duration / interval)):
+        wave = np.sin(k * engine.fluid_positions[:, 1])
+        engine.fluid_velocities[:, 0] += kick * (wave - wave.mean())
+        after.append(2 * np.mean(engine.fluid_velocities[:, 0] * wave))
+        advance()
+        wave = np.sin(k * engine.fluid_positions[:, 1])
+        before.append(2 * np.mean(engine.fluid_velocities[:, 0] * wave))
+    x, y = np.array(after), np.array(before)
+    decay = (x @ y) / (x @ x)
+    blocks = np.array_split(x * (y - decay * x), 40)
+    decay_error = np.sqrt(np.sum([block.sum() ** 2 for block in blocks])) / (x @ x)
+    return -math.log(decay) / (theory * interval), decay_error / decay / (theory * interval)
+
+
+@pytest.mark.statistics
+@pytest.mark.parametrize("point", GRID, ids=str)
+def test_with_molecular_chaos_theory_holds(point: Point) -> None:
+    ratio, error = measured_viscosity(ReferenceEngine(bulk(point)), chaos=True)
+    print(f"\nchaos {point}: {ratio:.4f} +- {error:.4f} of theory", flush=True)
+    # within 1 %, as far as the error tells: if theory is exact a false alarm is at 4.2 errors
+    assert abs(ratio - 1) < 0.01 + 2 * error
+
+
+@pytest.mark.statistics
+@pytest.mark.parametrize("point", GRID, ids=str)
+def test_viscosity(point: Point) -> None:
+    ratio, error = measured_viscosity(ReferenceEngine(bulk(point)))
+    print(f"\nfluid {point}: {ratio:.4f} +- {error:.4f} of theory", flush=True)
