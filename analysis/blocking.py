@@ -19,7 +19,10 @@ MIN_BLOCK_LENGTH = 2  # in measured inefficiencies g: the error is then at most 
 
 @dataclass(frozen=True)
 class Estimate:
-    """A number and its standard error; `reason` says why either is None."""
+    """A number and its standard error.
+
+    `reason` says why either is None, or why the error is only a lower bound.
+    """
 
     value: float | None
     error: float | None
@@ -32,7 +35,7 @@ class Estimate:
         return Estimate(value, error, self.reason)
 
     def as_json(self) -> dict[str, Any]:
-        """`{value, error}`, and `reason` where one of them is None."""
+        """`{value, error}`, and `reason` where there is one."""
         entry: dict[str, Any] = {"value": self.value, "error": self.error}
         if self.reason is not None:
             entry["reason"] = self.reason
@@ -70,8 +73,9 @@ def mean(series: ArrayLike) -> Estimate:
 
     With g = (error from blocks of B / error from single samples)^2, the statistical inefficiency
     and at least 1, the block length is the smallest with B^3 > 2 n g^2 (Lee et al.), or, in a
-    series too short for that, the longest that leaves `MIN_BLOCKS` blocks. The error is None when
-    that block is shorter than `MIN_BLOCK_LENGTH` g: then the correlation is not resolved.
+    series too short for that, the longest that leaves `MIN_BLOCKS` blocks. When that block is
+    shorter than `MIN_BLOCK_LENGTH` g the correlation is not resolved: the error is a lower bound,
+    and the estimate says so. Fewer than `MIN_BLOCKS` samples have no error.
 
     Args:
         series: samples, (n,).
@@ -82,9 +86,8 @@ def mean(series: ArrayLike) -> Estimate:
     value = float(samples.mean())
     if np.all(samples == samples[0]):
         samples = np.zeros_like(samples)  # a constant has error 0, not the rounding of its mean
-    too_few = Estimate(value, None, f"{len(samples)} samples are too few for their correlation")
     if len(samples) < MIN_BLOCKS:
-        return too_few
+        return Estimate(value, None, f"{len(samples)} samples are too few for an error")
     lengths, errors = blocking_curve(samples)
     if errors[0] == 0:
         return Estimate(value, 0.0)
@@ -93,6 +96,7 @@ def mean(series: ArrayLike) -> Estimate:
     inefficiency = np.maximum(1.0, (errors / errors[0]) ** 2)
     plateau = lengths.astype(float) ** 3 > 2 * len(samples) * inefficiency**2
     level = int(np.argmax(plateau)) if plateau.any() else len(lengths) - 1
+    error = float(errors[level])
     if lengths[level] < MIN_BLOCK_LENGTH * inefficiency[level]:
-        return too_few
-    return Estimate(value, float(errors[level]))
+        return Estimate(value, error, f"at least: {len(samples)} samples are too correlated")
+    return Estimate(value, error)

@@ -20,7 +20,7 @@ Array = NDArray[np.float64]
 Steps = NDArray[np.int64]
 
 MANIFEST_KEYS = ("scene", "engine", "fields", "dimension", "fluid_particles", "colloids")
-MANIFEST_COUNTS = ("steps_per_collision", "sample_steps", "total_steps")
+MANIFEST_COUNTS = ("steps_per_collision", "sample_steps", "fluid_looks", "total_steps")
 
 
 class RunDirectoryError(ValueError):
@@ -98,8 +98,8 @@ class RunDirectory:
             self._require(key in self.manifest, key, "is missing")
         self._require(isinstance(self.manifest["fields"], dict), "fields", "is not a table")
         self._require(self.manifest["dimension"] in (2, 3), "dimension", "must be 2 or 3")
-        optional = ("fluid_looks",) if "fluid_looks" in self.manifest else ()
-        for key in MANIFEST_COUNTS + optional:
+        self._adopt_variables()
+        for key in MANIFEST_COUNTS:
             value = self.manifest.get(key)
             self._require(isinstance(value, int) and value > 0, key, "must be a positive integer")
         equilibration = self.manifest.get("equilibration_steps")
@@ -114,6 +114,14 @@ class RunDirectory:
             "time_step",
             "must be a positive number",
         )
+
+    def _adopt_variables(self) -> None:
+        """What `lmp -var` made of the deck's variables wins over what the scene said."""
+        if (self.path / "variables.json").is_file():
+            variables = self._read_json("variables.json")
+            if "gravity" in variables:
+                self.manifest["fields"]["gravity"] = variables.pop("gravity")
+            self.manifest |= variables
 
     def _require(self, holds: bool, key: str, problem: str) -> None:
         if not holds:
@@ -161,9 +169,14 @@ class RunDirectory:
 
     @property
     def fluid_looks(self) -> int:
-        """Evenly spaced samples in each average of the fluid; one a collision unless stated."""
-        collisions = self.manifest["sample_steps"] // self.manifest["steps_per_collision"]
-        return int(self.manifest.get("fluid_looks", max(1, collisions)))
+        """Evenly spaced looks at the fluid that each average is made of."""
+        return int(self.manifest["fluid_looks"])
+
+    @property
+    def viscosity_theory(self) -> float | None:
+        """Kinematic viscosity of the fluid by kinetic theory, where there is one [a0^2/t0]."""
+        theory = self.manifest.get("viscosity_theory")
+        return None if theory is None else float(theory)
 
     @property
     def equilibration_steps(self) -> int:

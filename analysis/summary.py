@@ -19,7 +19,6 @@ from analysis.run_directory import RunDirectory, RunDirectoryError
 from analysis.settling import co_moving, settling_speed
 from analysis.shear_wave import decay_viscosity, wave_amplitude
 from analysis.temperature import colloid_temperature
-from analysis.theory import kinematic_viscosity
 
 Array = NDArray[np.float64]
 
@@ -93,33 +92,13 @@ def _sampled(run: RunDirectory, steps: NDArray[np.int64]) -> NDArray[np.bool_]:
     return np.asarray(used)
 
 
-def _theory(run: RunDirectory) -> float | str:
-    """Kinematic viscosity that kinetic theory gives this fluid, or why there is none."""
-    if run.field("hydrodynamics") != "on":
-        return "a random solvent has no viscosity"
-    if run.manifest["dimension"] == 3 and run.field("rotation") != "coordinate_axes":
-        return "no equation for 3D rotations about a random axis"
-    try:
-        return kinematic_viscosity(
-            run.number("density"),
-            run.number("collision_time"),
-            run.number("angle"),
-            run.manifest["dimension"],
-        )
-    except ValueError as error:
-        return str(error)
-
-
-def _viscosity_json(viscosity: Estimate, theory: float | str) -> dict[str, Any]:
-    entry = viscosity.as_json()
-    if isinstance(theory, str):
-        return entry | {"theory": None, "theory_reason": theory}
-    return entry | {"theory": theory}
+def _with_theory(viscosity: Estimate, run: RunDirectory) -> dict[str, Any]:
+    return viscosity.as_json() | {"theory": run.viscosity_theory}
 
 
 def _slit_flow(run: RunDirectory, results: Results) -> None:
     """Profile and Reynolds number; where gravity drives the fluid, the parabola's viscosity."""
-    fluid, width, theory = run.fluid_profile, run.number("width"), _theory(run)
+    fluid, width = run.fluid_profile, run.number("width")
     used = _sampled(run, fluid.steps)
     counts, velocity = fluid.counts[used], fluid.velocity_x[used]
     fit = None
@@ -134,14 +113,14 @@ def _slit_flow(run: RunDirectory, results: Results) -> None:
         viscosity = _poiseuille_viscosity(maximum, gravity, width)
         curvature = _poiseuille_viscosity(blocking.mean(v_max - v_wall), gravity, width)
         results.summary["maximum_velocity"] = maximum.as_json()
-        results.summary["viscosity"] = _viscosity_json(viscosity, theory)
+        results.summary["viscosity"] = _with_theory(viscosity, run)
         results.summary["viscosity_curvature"] = curvature.as_json()
         results.summary["wall_slip"] = _ratio(v_wall, v_max).scaled(100).as_json()
     mean_velocity = blocking.mean(flow.mean_velocity(counts, velocity))
-    if isinstance(theory, str):
-        reynolds = Estimate(None, None, theory)
+    if run.viscosity_theory is None:
+        reynolds = Estimate(None, None, "kinetic theory has no viscosity for this fluid")
     else:
-        reynolds = mean_velocity.scaled(flow.reynolds_number(1.0, width, theory))
+        reynolds = mean_velocity.scaled(flow.reynolds_number(1.0, width, run.viscosity_theory))
     results.summary["fluid_velocity"] = mean_velocity.as_json()
     results.summary["reynolds_number"] = reynolds.as_json()
     mean_profile = flow.momentum_profile(counts, velocity).mean(axis=0)
@@ -178,7 +157,7 @@ def _shear_wave(run: RunDirectory, results: Results) -> None:
     used = _sampled(run, fluid.steps)
     amplitude = wave_amplitude(fluid.y, width, fluid.counts, fluid.velocity_x)
     viscosity = decay_viscosity(amplitude[used], run.interval, run.fluid_looks, width)
-    results.summary["viscosity"] = _viscosity_json(viscosity, _theory(run))
+    results.summary["viscosity"] = _with_theory(viscosity, run)
     results.figures["shear_wave.png"] = figures.wave_decay(
         run.times(fluid.steps),
         amplitude,

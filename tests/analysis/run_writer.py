@@ -40,11 +40,13 @@ def write_manifest(path: Path, scene: str, fields: dict[str, Any], /, **changes:
         "time_step": 0.1,
         "steps_per_collision": 1,
         "sample_steps": 10,
+        "fluid_looks": 1,
         "equilibration_steps": 50,
         "total_steps": 20_000,
         "fluid_particles": 4000,
         "colloids": colloids,
         "colloid_mass": 100.0 if colloids else None,
+        "viscosity_theory": 0.75,
     }
     (path / "manifest.json").write_text(json.dumps(manifest | changes))
 

@@ -54,11 +54,13 @@ def test_pulls_are_standard_normal():
     assert abs(pulls.std() - 1.03) < PULL_BOUND / math.sqrt(2 * 200)
 
 
-def test_correlation_longer_than_the_series_gives_no_error():
+def test_correlation_longer_than_the_series_gives_a_lower_bound():
     ramp = np.linspace(0.0, 1.0, 1000)
-    assert mean(ramp) == Estimate(
-        pytest.approx(0.5), None, "1000 samples are too few for their correlation"
-    )
+    estimate = mean(ramp)
+    assert estimate.value == pytest.approx(0.5)
+    assert estimate.reason == "at least: 1000 samples are too correlated"
+    # the longest blocks that leave six: 128 samples, 7 means of a ramp 0.128 apart
+    assert estimate.error == pytest.approx(0.1282 * math.sqrt(14 / 3 / 7), rel=0.01)
 
 
 @pytest.mark.parametrize("samples", [1, 2, 5])
@@ -66,7 +68,7 @@ def test_few_samples_give_a_value_without_error(samples):
     estimate = mean(np.arange(samples) % 2)
     assert estimate.value is not None
     assert estimate.error is None
-    assert estimate.reason == f"{samples} samples are too few for their correlation"
+    assert estimate.reason == f"{samples} samples are too few for an error"
 
 
 def test_no_samples():

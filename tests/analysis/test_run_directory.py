@@ -102,12 +102,13 @@ def test_run_by_hand_is_known_by_its_log(channel):
     assert RunDirectory(channel).finished()
 
 
-@pytest.mark.parametrize(
-    ("looks", "expected"), [({}, 10), ({"fluid_looks": 2}, 2), ({"steps_per_collision": 5}, 2)]
-)
-def test_looks_at_the_fluid(channel, looks, expected):
-    write_manifest(channel, "channel", CHANNEL, colloids=3, **looks)
-    assert RunDirectory(channel).fluid_looks == expected
+def test_variables_of_the_command_line_win_over_the_manifest(channel):
+    (channel / "variables.json").write_text(
+        '{"total_steps": 200, "sample_steps": 10, "gravity": 0.7}\n'
+    )
+    run = RunDirectory(channel)
+    assert run.field("gravity") == 0.7
+    assert run.finished()  # the manifest says 20000
 
 
 def read_everything(path: Path) -> None:

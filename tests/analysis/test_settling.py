@@ -17,15 +17,15 @@ def test_co_moving_frame_by_hand():
 
 
 def test_temperature_of_two_colloids_by_hand():
-    # along x 1 and 3 about their mean 2, along y at rest: M (1 + 1 + 0 + 0) / (2 N - 2) = 5
-    velocities = np.array([[[1.0, 0.0], [3.0, 0.0]]])
-    assert colloid_temperature(velocities, mass=5.0) == pytest.approx([5.0])
+    # only y counts: M (1 + 9) / 2
+    velocities = np.array([[[7.0, 1.0], [8.0, -3.0]]])
+    assert colloid_temperature(velocities, mass=5.0) == pytest.approx([25.0])
 
 
-def test_temperature_takes_the_drift_out_and_not_more():
+def test_temperature_is_free_of_the_drift():
     random = np.random.default_rng(3)
     mass, samples = 125.0, 40_000
     velocities = random.normal(size=(samples, 1, 2)) / np.sqrt(mass) + [0.5, 0.0]
-    # variance of the mean of 2 x 40000 squared normal deviates: 2/80000; 4.4 deviations (1e-5)
+    # variance of the mean of 40000 squared normal deviates: 2/40000; 4.4 deviations (1e-5)
     found = colloid_temperature(velocities, mass).mean()
-    assert found == pytest.approx(1.0, abs=4.4 * np.sqrt(2 / (2 * samples)))
+    assert found == pytest.approx(1.0, abs=4.4 * np.sqrt(2 / samples))
