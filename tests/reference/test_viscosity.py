@@ -25,23 +25,23 @@ KICK_INTERVAL = 5  # collisions; longer than the memory of the stress
 
 Point = tuple[int, Rotation, float, float, float]  # dimension, rotation, n_f, alpha, tau_c
 GRID: list[Point] = [
-    *product((2,), ("coordinate_axes",), (3, 10), (60, 90, 130), (0.05, 0.2, 1.0)),
-    *product((3,), ("coordinate_axes",), (3, 10), (90,), (0.05, 0.2, 1.0)),
-    *product((3,), ("random_axis",), (10,), (60, 130), (0.05, 0.2, 1.0)),
+    *product((2,), ("coordinate_axes",), (3, 10), (60, 90, 130), (0.05, 0.2, 0.5)),
+    *product((3,), ("coordinate_axes",), (3, 10), (90,), (0.05, 0.2, 0.5)),
+    *product((3,), ("random_axis",), (10,), (60, 130), (0.05, 0.2, 0.5)),
 ]
 
 
-def bulk(point: Point) -> Bulk:
+def bulk(point: Point, length: int = 24) -> Bulk:
     """A wave long enough, and slow enough, for corrections in k and shear rate below the errors.
 
-    No longer along x than across, which keeps the shear wave stable.
+    No longer along x than across, which keeps the shear wave of the fluid stable.
     """
     dimension, rotation, density, angle, collision_time = point
     kinetic = collision_time >= 0.5
     return Bulk.make(
         dimension=dimension,
         rotation=rotation,
-        length=24 if dimension == 2 else 12,
+        length=length if dimension == 2 else 12,
         width=48 if kinetic else 24,
         height=None if dimension == 2 else 12,
         density=density,
@@ -102,7 +102,8 @@ def measured_viscosity(engine: ReferenceEngine, chaos: bool = False) -> tuple[fl
 @pytest.mark.statistics
 @pytest.mark.parametrize("point", GRID, ids=str)
 def test_with_molecular_chaos_theory_holds(point: Point) -> None:
-    ratio, error = measured_viscosity(ReferenceEngine(bulk(point)), chaos=True)
+    # a long box in 2D: the fewer particles meet again by chance, the less is left of correlations
+    ratio, error = measured_viscosity(ReferenceEngine(bulk(point, length=96)), chaos=True)
     print(f"\nchaos {point}: {ratio:.4f} +- {error:.4f} of theory", flush=True)
     # within 1 %, as far as the error tells: if theory is exact a false alarm is at 4.2 errors
     assert abs(ratio - 1) < 0.01 + 2 * error
