@@ -58,9 +58,9 @@ def measured_viscosity(engine: ReferenceEngine, chaos: bool = False) -> tuple[fl
     """Viscosity over that of theory, and its standard error; molecular chaos enforced or not.
 
     Kicks keep a shear wave at its amplitude A. With a = (2 / N) sum v_x sin(k y), one interval is
-    a' = exp(-nu k^2 Delta) (a + kick) + xi, xi the white thermal noise. Its regression gives nu;
-    the error is that of the block sums of the residuals. The run is as long as theory says that
-    the error takes: 4 / (N A^2 nu k^2 error^2).
+    a' = exp(-nu k^2 Delta) (a + kick) + xi, xi the thermal noise, which is white over more than a
+    sound period. The sums of both sides give nu; the error is that of the block sums of the
+    residuals. The run is as long as theory says that the error takes: 4 / (N A^2 nu k^2 error^2).
     """
     scene = engine.scene
     assert isinstance(scene, Bulk)
@@ -93,9 +93,9 @@ def measured_viscosity(engine: ReferenceEngine, chaos: bool = False) -> tuple[fl
         wave = np.sin(k * engine.fluid_positions[:, 1])
         before.append(2 * np.mean(engine.fluid_velocities[:, 0] * wave))
     x, y = np.array(after), np.array(before)
-    decay = (x @ y) / (x @ x)
-    blocks = np.array_split(x * (y - decay * x), 40)
-    decay_error = np.sqrt(np.sum([block.sum() ** 2 for block in blocks])) / (x @ x)
+    decay = y.sum() / x.sum()
+    blocks = np.array_split(y - decay * x, 20)
+    decay_error = np.sqrt(np.sum([block.sum() ** 2 for block in blocks])) / x.sum()
     return -math.log(decay) / (theory * interval), decay_error / decay / (theory * interval)
 
 
