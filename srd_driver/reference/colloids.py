@@ -78,7 +78,9 @@ class ColloidForces:
         self._fluid_pairs = fluid.within(reach[fluid.first], fluid_positions, colloid_positions)
 
         first, second = np.triu_indices(self._scene.colloids, k=1)
-        image = _nearest_image(colloid_positions, first, colloid_positions, second, self._scene)
+        image = _image(
+            colloid_positions[0, first] - colloid_positions[0, second], self._scene.length
+        )
         self._colloid_pairs = Pairs(first, second, image).within(
             self._scene.colloid_colloid.cutoff + 2 * self._colloid_allowance,
             colloid_positions,
@@ -167,11 +169,9 @@ def _sums(indices: Indices, forces: Array, count: int) -> Array:
     return sums
 
 
-def _nearest_image(
-    first_positions: Array, first: Indices, second_positions: Array, second: Indices, scene: Channel
-) -> Array:
-    separation = first_positions[0, first] - second_positions[0, second]
-    image: Array = -scene.length * np.round(separation / scene.length)
+def _image(separation: Array, length: float) -> Array:
+    """What to add to separations along x to make them those of the nearest images."""
+    image: Array = -length * np.round(separation / length)
     return image
 
 
@@ -190,5 +190,4 @@ def _columns_near(fluid: Array, colloids: Array, reach: float, length: float) ->
     second = np.repeat(np.repeat(np.arange(colloids.shape[1]), len(offsets)), counts)
     within = np.arange(len(second)) - np.repeat(np.cumsum(counts) - counts, counts)
     first = by_column[np.repeat(start[near].ravel(), counts) + within]
-    separation = fluid[0, first] - colloids[0, second]
-    return Pairs(first, second, -length * np.round(separation / length))
+    return Pairs(first, second, _image(fluid[0, first] - colloids[0, second], length))

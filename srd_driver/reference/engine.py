@@ -133,9 +133,9 @@ class ReferenceEngine:
 
     def save(self, file: str | PathLike[str]) -> None:
         """Write the state as npz; `load` continues from it bit for bit."""
-        with open(file, "wb") as stream_:
+        with open(file, "wb") as output:
             np.savez(
-                stream_,
+                output,
                 collisions=self.collisions,
                 fluid_positions=self._fluid_positions,
                 fluid_velocities=self._fluid_velocities,

@@ -25,23 +25,23 @@ KICK_INTERVAL = 5  # collisions; longer than the memory of the stress
 
 Point = tuple[int, Rotation, float, float, float]  # dimension, rotation, n_f, alpha, tau_c
 GRID: list[Point] = [
-    *product((2,), ("coordinate_axes",), (3, 10), (60, 90, 130), (0.05, 0.2, 1.0)),
-    *product((3,), ("coordinate_axes",), (3, 10), (90,), (0.05, 0.2, 1.0)),
-    *product((3,), ("random_axis",), (10,), (60, 130), (0.05, 0.2, 1.0)),
+    *product((2,), ("coordinate_axes",), (3, 10), (60, 90, 130), (0.05, 0.2, 0.5)),
+    *product((3,), ("coordinate_axes",), (3, 10), (90,), (0.05, 0.2, 0.5)),
+    *product((3,), ("random_axis",), (10,), (60, 130), (0.05, 0.2, 0.5)),
 ]
 
 
-def bulk(point: Point) -> Bulk:
+def bulk(point: Point, length: int = 24) -> Bulk:
     """A wave long enough, and slow enough, for corrections in k and shear rate below the errors.
 
-    No longer along x than across, which keeps the shear wave stable.
+    No longer along x than across, which keeps the shear wave of the fluid stable.
     """
     dimension, rotation, density, angle, collision_time = point
     kinetic = collision_time >= 0.5
     return Bulk.make(
         dimension=dimension,
         rotation=rotation,
-        length=24 if dimension == 2 else 12,
+        length=length if dimension == 2 else 12,
         width=48 if kinetic else 24,
         height=None if dimension == 2 else 12,
         density=density,
@@ -58,9 +58,9 @@ def measured_viscosity(engine: ReferenceEngine, chaos: bool = False) -> tuple[fl
     """Viscosity over that of theory, and its standard error; molecular chaos enforced or not.
 
     Kicks keep a shear wave at its amplitude A. With a = (2 / N) sum v_x sin(k y), one interval is
-    a' = exp(-nu k^2 Delta) (a + kick) + xi, xi the white thermal noise. Its regression gives nu;
-    the error is that of the block sums of the residuals. The run is as long as theory says that
-    the error takes: 4 / (N A^2 nu k^2 error^2).
+    a' = exp(-nu k^2 Delta) (a + kick) + xi, xi the thermal noise, which is white over more than a
+    sound period. The sums of both sides give nu; the error is that of the block sums of the
+    residuals. The run is as long as theory says that the error takes: 4 / (N A^2 nu k^2 error^2).
     """
     scene = engine.scene
     assert isinstance(scene, Bulk)
@@ -93,16 +93,17 @@ def measured_viscosity(engine: ReferenceEngine, chaos: bool = False) -> tuple[fl
         wave = np.sin(k * engine.fluid_positions[:, 1])
         before.append(2 * np.mean(engine.fluid_velocities[:, 0] * wave))
     x, y = np.array(after), np.array(before)
-    decay = (x @ y) / (x @ x)
-    blocks = np.array_split(x * (y - decay * x), 40)
-    decay_error = np.sqrt(np.sum([block.sum() ** 2 for block in blocks])) / (x @ x)
+    decay = y.sum() / x.sum()
+    blocks = np.array_split(y - decay * x, 20)
+    decay_error = np.sqrt(np.sum([block.sum() ** 2 for block in blocks])) / x.sum()
     return -math.log(decay) / (theory * interval), decay_error / decay / (theory * interval)
 
 
 @pytest.mark.statistics
 @pytest.mark.parametrize("point", GRID, ids=str)
 def test_with_molecular_chaos_theory_holds(point: Point) -> None:
-    ratio, error = measured_viscosity(ReferenceEngine(bulk(point)), chaos=True)
+    # a long box in 2D: the fewer particles meet again by chance, the less is left of correlations
+    ratio, error = measured_viscosity(ReferenceEngine(bulk(point, length=96)), chaos=True)
     print(f"\nchaos {point}: {ratio:.4f} +- {error:.4f} of theory", flush=True)
     # within 1 %, as far as the error tells: if theory is exact a false alarm is at 4.2 errors
     assert abs(ratio - 1) < 0.01 + 2 * error

@@ -2,6 +2,7 @@
 
 import numpy as np
 import pytest
+from numpy.typing import NDArray
 
 from lammps_inputs import Poiseuille
 from lammps_inputs.viscosity import viscosity
@@ -60,46 +61,66 @@ def test_fluid_stays_between_walls_that_are_no_whole_number_of_cells() -> None:
     assert abs(engine.fluid_temperature() - 1) < 0.2
 
 
-def profile(scene: Poiseuille) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-    """Fluid velocity v_x in half-cell bins, from 20 blocks of the run: y, mean, (20, bins)."""
+def parabola(scene: Poiseuille) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
+    """Curvature and wall value of v_x = slip + curvature y (L_y - y), from 20 blocks, (20,) each.
+
+    Fitted to half-cell bins, without the cell next to each wall.
+    """
     engine = ReferenceEngine(scene)
     engine.advance(round(scene.equilibration / scene.collision_time))
     bins = round(2 * scene.width)
-    blocks = np.zeros((20, bins))
-    collisions = round(scene.duration / scene.collision_time / 20)
-    for block in blocks:
-        count = np.zeros(bins)
-        for _ in range(collisions):
+    y = (np.arange(bins) + 0.5) / 2
+    profiles = []
+    for _ in range(20):
+        momentum, count = np.zeros(bins), np.zeros(bins)
+        for _ in range(round(scene.duration / scene.collision_time / 20)):
             engine.advance(1)
             bin_ = np.minimum((2 * engine.fluid_positions[:, 1]).astype(int), bins - 1)
-            block += np.bincount(bin_, engine.fluid_velocities[:, 0], bins)
+            momentum += np.bincount(bin_, engine.fluid_velocities[:, 0], bins)
             count += np.bincount(bin_, minlength=bins)
-        block /= count
-    return (np.arange(bins) + 0.5) / 2, blocks.mean(axis=0), blocks
+        profiles.append((momentum / count)[2:-2])
+    basis = np.stack([y * (scene.width - y), np.ones(bins)]).T[2:-2]
+    curvature, slip = np.linalg.lstsq(basis, np.transpose(profiles), rcond=None)[0]
+    return curvature, slip
 
 
 @pytest.mark.statistics
-def test_poiseuille_flow_sticks_to_the_walls() -> None:
-    """Fig. 3.6: the parabola, its viscosity (3.15) and the slip at the wall.
+@pytest.mark.parametrize(
+    ("scene", "paper"),
+    [
+        (Poiseuille.make(gravity=0.01, duration=6000, seed=SEED), 0.729),
+        (
+            Poiseuille.make(
+                length=20, width=10, density=5, gravity=0.05, duration=16000, seed=SEED
+            ),
+            0.6179,
+        ),
+    ],
+    ids=["Fig 3.6", "Fig 3.7"],
+)
+def test_poiseuille_flow_of_the_paper(scene: Poiseuille, paper: float) -> None:
+    """The viscosity that (3.15) makes of the maximum, as the paper does, and the slip behind it.
 
     python -m pytest -m statistics -s tests/reference/test_walls.py
     """
-    scene = Poiseuille.make(gravity=0.01, duration=6000, seed=SEED)
-    y, mean, blocks = profile(scene)
-    # velocity is measured after a flight of tau_c: half a kick later than the mean over the flight
-    y, mean, blocks = y[2:-2], mean[2:-2], blocks[:, 2:-2]
-    parabola = np.stack([y * (scene.width - y), np.ones_like(y)]).T
-    curvature, slip = np.linalg.lstsq(parabola, mean, rcond=None)[0]
-    fits = np.linalg.lstsq(parabola, blocks.T, rcond=None)[0]
-    curvature_error, slip_error = fits.std(axis=1, ddof=1) / np.sqrt(len(blocks))
-    top = curvature * scene.width**2 / 4
-    nu, nu_error = (
-        scene.gravity / (2 * curvature),
-        curvature_error * scene.gravity / (2 * curvature**2),
-    )
-    print(
-        f"\nv_max {top:.5f}, slip {slip:.5f} +- {slip_error:.5f} ({slip / top:.4f} of v_max), "
-        f"nu {nu:.4f} +- {nu_error:.4f}, theory {viscosity(10, 0.1, 90):.4f}"
-    )
-    assert abs(slip) / top < 0.01
-    assert abs(nu / viscosity(10, 0.1, 90) - 1) < 0.02
+    curvature, slip = parabola(scene)
+    top = slip + curvature * scene.width**2 / 4
+    theory = viscosity(scene.density, scene.collision_time, scene.angle)
+    measured = {
+        "nu of the maximum": scene.gravity * scene.width**2 / 8 / top,
+        "nu of the curvature": scene.gravity / 2 / curvature,
+        "slip / v_max": slip / top,
+        "slip length": slip / (curvature * scene.width),
+    }
+    print(f"\npaper {paper}, theory {theory:.4f}")
+    values = {}
+    for name, blocks in measured.items():
+        values[name] = mean, error = blocks.mean(), blocks.std(ddof=1) / np.sqrt(len(blocks))
+        print(f"{name}: {mean:.4f} +- {error:.4f}", flush=True)
+    # four errors and 1 %, the paper printing no error: a false alarm below once in 15 000 runs
+    nu, error = values["nu of the maximum"]
+    assert abs(nu - paper) < 4 * error + 0.01 * paper
+    # (3.14) leaves a slip length of a0 / 4, where momentum moves by collisions in full cells; less
+    # where n fluctuates and some of it flies (docs/reference.md)
+    length, error = values["slip length"]
+    assert 0.1 < length < 0.25 + 4 * error
