@@ -107,7 +107,7 @@ def states(draw: st.DrawFn) -> tuple[Bulk, InitialState]:
         angle=angle,
         rotation=rotation,
         collision_time=draw(st.sampled_from([0.01, 0.3, 4.0])),
-        sampling_interval=4.0,
+        thermostat="none",
         seed=draw(st.integers(1, 2**31 - 1)),
     )
     random = np.random.default_rng(draw(st.integers(0, 2**32)))
@@ -168,7 +168,7 @@ class TestGalileanInvariance:
                 "srd_driver.reference.engine.grid_shift", lambda random, dimensions: np.zeros(2)
             )
         scene = Bulk.make(
-            length=40, width=40, density=5, collision_time=0.02, angle=120, sampling_interval=1
+            length=40, width=40, density=5, collision_time=0.02, angle=120, thermostat="none"
         )
         engine = ReferenceEngine(scene)
         engine.advance(20)

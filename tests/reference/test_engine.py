@@ -63,7 +63,9 @@ def test_everything_stays_in_the_box(name: str, fields: dict[str, Any]) -> None:
 
 def test_one_collision_by_hand() -> None:
     """Two particles alone in one cell: flight, wrap, cell, rotation, with the documented words."""
-    scene = Bulk.make(length=4, width=4, density=2 / 16, angle=90, collision_time=1.0, seed=1)
+    scene = Bulk.make(
+        length=4, width=4, density=2 / 16, angle=90, collision_time=1.0, thermostat="none", seed=1
+    )
     state = InitialState(
         np.array([[3.5, 2.0], [3.6, 2.2]]),
         np.array([[1.0, 0.0], [1.0, -0.2]]),

@@ -88,7 +88,7 @@ def test_a_shear_wave_lives_only_with_hydrodynamics(
     hydrodynamics: Hydrodynamics, kept: bool
 ) -> None:
     scene = Bulk.make(
-        length=16, width=32, shear_wave=1.0, hydrodynamics=hydrodynamics, sampling_interval=1
+        length=16, width=32, shear_wave=1.0, hydrodynamics=hydrodynamics, thermostat="none"
     )
     engine = ReferenceEngine(scene)
     engine.advance(3)
@@ -100,7 +100,7 @@ def test_a_shear_wave_lives_only_with_hydrodynamics(
 
 
 def test_shuffle_conserves_momentum_and_energy() -> None:
-    engine = ReferenceEngine(Bulk.make(hydrodynamics="shuffle", sampling_interval=1))
+    engine = ReferenceEngine(Bulk.make(hydrodynamics="shuffle", thermostat="none"))
     momentum, energy = engine.mean_velocity(), engine.energy()
     engine.advance(20)
     np.testing.assert_allclose(engine.mean_velocity(), momentum, atol=1e-13)

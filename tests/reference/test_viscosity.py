@@ -49,7 +49,6 @@ def bulk(point: Point, length: int = 24) -> Bulk:
         collision_time=collision_time,
         shear_wave=0.5 if kinetic else 1.0,
         thermostat="layer",
-        sampling_interval=collision_time,
         seed=SEED,
     )
 
