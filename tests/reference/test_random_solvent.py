@@ -99,6 +99,18 @@ def test_a_shear_wave_lives_only_with_hydrodynamics(
     assert kept or abs(amplitude) < 0.12
 
 
+def test_shuffle_comes_after_rotation_and_thermostat() -> None:
+    scenes = [
+        Bulk.make(length=8, width=8, thermostat="layer", hydrodynamics=h, sampling_interval=1)
+        for h in ("on", "shuffle")
+    ]
+    on, shuffled = (ReferenceEngine(scene) for scene in scenes)
+    on.advance(1)
+    shuffled.advance(1)
+    permutation = random_solvent.permutation(len(on.fluid_velocities), CounterRandom(1, 0))
+    np.testing.assert_array_equal(shuffled.fluid_velocities, on.fluid_velocities[permutation])
+
+
 def test_shuffle_conserves_momentum_and_energy() -> None:
     engine = ReferenceEngine(Bulk.make(hydrodynamics="shuffle", sampling_interval=1))
     momentum, energy = engine.mean_velocity(), engine.energy()

@@ -1,5 +1,7 @@
 """Streaming and bounce-back: by hand, against brute force, and the paper's printed forms."""
 
+import functools
+
 import numpy as np
 import pytest
 from hypothesis import given
@@ -114,14 +116,18 @@ class TestErrata:
 
     x, y, v_x, v_y, g, time = 0.4, 0.3, 0.8, -1.0, 2.0, 1.0
 
-    def truth(self, steps: int = 400_000) -> tuple[float, float]:
+    steps = 100_000  # the brute-force bounce is late by at most 1e-5: x and v_x by less than 1e-4
+
+    @classmethod
+    @functools.cache
+    def truth(cls) -> tuple[float, float]:
         r, v = brute_force(
-            column(self.x, self.y),
-            column(self.v_x, self.v_y),
-            column(self.g, 0),
-            self.time,
+            column(cls.x, cls.y),
+            column(cls.v_x, cls.v_y),
+            column(cls.g, 0),
+            cls.time,
             10.0,
-            steps,
+            cls.steps,
         )
         return r[0, 0], v[0, 0]
 
@@ -129,7 +135,7 @@ class TestErrata:
         r, v = streamed(
             column(self.x, self.y), column(self.v_x, self.v_y), column(self.g, 0), self.time, 10.0
         )
-        np.testing.assert_allclose((r[0, 0], v[0, 0]), self.truth(), atol=2e-5)
+        np.testing.assert_allclose((r[0, 0], v[0, 0]), self.truth(), atol=1e-4)
 
     def test_printed_3_12_and_3_13(self) -> None:
         v_contact = self.v_x + self.g * self.time
@@ -146,7 +152,7 @@ class TestErrata:
             + self.g * (self.time - 2 * t_c) ** 2 / 2
         )
         v = -v_contact + self.g * (self.time - t_c)
-        np.testing.assert_allclose((x, v), self.truth(), atol=2e-5)
+        np.testing.assert_allclose((x, v), self.truth(), atol=1e-4)
 
     def test_3_44(self) -> None:
         # y + v t + F t^2 / (2 m) = 0 with F = -1.5 towards the wall at y = 0
