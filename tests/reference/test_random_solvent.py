@@ -2,7 +2,7 @@
 
 import numpy as np
 import pytest
-from hypothesis import given
+from hypothesis import given, settings
 from hypothesis import strategies as st
 from scipy.stats import chi2, kstest
 
@@ -33,6 +33,7 @@ def feistel_in_plain_python(index: int, count: int, seed: int, step: int) -> int
             return index
 
 
+@settings(deadline=None)
 @given(count=st.integers(1, 2000), seed=st.integers(1, 2**31 - 1), step=st.integers(0, 10**9))
 def test_permutation_is_a_bijection(count: int, seed: int, step: int) -> None:
     permutation = random_solvent.permutation(count, CounterRandom(seed, step))

@@ -4,7 +4,7 @@ import functools
 
 import numpy as np
 import pytest
-from hypothesis import given
+from hypothesis import given, settings
 from hypothesis import strategies as st
 from numpy.typing import NDArray
 
@@ -67,6 +67,7 @@ def test_two_walls_in_one_step() -> None:
     a_x=st.floats(-2, 2),
     a_y=st.floats(0, 2),
 )
+@settings(deadline=None, max_examples=50)
 def test_against_brute_force(y: float, v_x: float, v_y: float, a_x: float, a_y: float) -> None:
     # a_y pushes to the upper wall: towards the lower one no particle turns back on its own, unless
     # it would dip through it and come back within the step, which streaming says it does not see
@@ -87,6 +88,7 @@ def test_against_brute_force(y: float, v_x: float, v_y: float, a_x: float, a_y: 
     a_y=st.floats(-5, 5),
     time=st.floats(0.001, 0.5),
 )
+@settings(deadline=None)
 def test_ends_between_the_walls(y: float, v_y: float, a_y: float, time: float) -> None:
     # the speed at a contact is at least 0.05: fewer than time a_y / (2 x 0.05) = 25 bounces
     r, v = streamed(column(0, y), column(0.3, v_y), column(0.1, a_y), time, 10.0)
