@@ -16,7 +16,7 @@ from srd_driver.reference.faults import SimulationFault
 Array = NDArray[np.float64]
 Indices = NDArray[np.intp]
 
-CORE = 0.5  # of sigma: no closer approach, an energy of 7e4 kBT for the softest pair
+CORE = 0.5  # of sigma: no closer approach, 1.6e4 kBT of the 12-6 repulsion
 
 
 @dataclass(frozen=True)

@@ -240,14 +240,18 @@ class ReferenceEngine:
             random_solvent.shuffle(velocities, random)
 
     def _check(self) -> None:
-        """Stop at a fluid particle that is nowhere, or not between the walls."""
-        if not np.isfinite(self._fluid_positions.sum() + self._fluid_velocities.sum()):
-            state = np.concatenate([self._fluid_positions, self._fluid_velocities])
-            lost = np.flatnonzero(~np.isfinite(state).all(axis=0))[0]
-            raise SimulationFault(
-                f"fluid particle {lost} has position {self._fluid_positions[:, lost]} and velocity "
-                f"{self._fluid_velocities[:, lost]}: not a number"
-            )
+        """Stop at a particle that is nowhere, or a fluid particle not between the walls."""
+        for kind, positions, velocities in (
+            ("fluid particle", self._fluid_positions, self._fluid_velocities),
+            ("colloid", self._colloid_positions, self._colloid_velocities),
+        ):
+            if not np.isfinite(positions.sum() + velocities.sum()):
+                finite = np.isfinite(np.concatenate([positions, velocities])).all(axis=0)
+                lost = np.flatnonzero(~finite)[0]
+                raise SimulationFault(
+                    f"{kind} {lost} has position {positions[:, lost]} and velocity "
+                    f"{velocities[:, lost]}: not a number"
+                )
         if self._width is not None:
             y = self._fluid_positions[1]
             if y.min() < 0 or y.max() > self._width:

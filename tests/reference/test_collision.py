@@ -18,7 +18,7 @@ from srd_driver.reference.collision import (
     rotate,
     signs,
 )
-from srd_driver.reference.counter_random import CounterRandom
+from srd_driver.reference.counter_random import CounterRandom, Stream
 
 Array = NDArray[np.float64]
 
@@ -91,6 +91,14 @@ def test_axes_and_signs_are_uniform() -> None:
     six, counts = np.unique(coordinate_axes(random, n), axis=1, return_counts=True)
     assert six.shape == (3, 6)
     np.testing.assert_allclose(counts, n / 6, atol=4.5 * np.sqrt(n * 5 / 36))
+
+
+def test_coordinate_axes_are_listed_in_the_documented_order() -> None:
+    axes = [(1, 0, 0), (-1, 0, 0), (0, 1, 0), (0, -1, 0), (0, 0, 1), (0, 0, -1)]
+    random = CounterRandom(3, 5)
+    drawn = coordinate_axes(random, 50).T
+    for axis, u in zip(drawn, random.uniform(Stream.ROTATION, 50)[0], strict=True):
+        assert tuple(axis) == axes[int(6 * u)]
 
 
 @st.composite

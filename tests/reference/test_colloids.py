@@ -192,6 +192,12 @@ class TestFaults:
         with pytest.raises(SimulationFault, match=r"step 30: fluid particle 5 .*not a number"):
             engine.advance(1)
 
+    def test_colloid_position_that_is_not_a_number(self) -> None:
+        engine = ReferenceEngine(Channel.make())
+        engine.colloid_positions[2, 0] = np.inf
+        with pytest.raises(SimulationFault, match=r"step 0: colloid 2 .*not a number"):
+            engine.advance(1)
+
     def test_fluid_beyond_a_wall(self) -> None:
         engine = ReferenceEngine(Channel.make())
         engine.fluid_positions[3] = [1, 12]

@@ -2,7 +2,7 @@
 
 import numpy as np
 import pytest
-from hypothesis import given
+from hypothesis import given, settings
 from hypothesis import strategies as st
 from scipy.stats import chi2, kstest
 
@@ -33,6 +33,7 @@ def feistel_in_plain_python(index: int, count: int, seed: int, step: int) -> int
             return index
 
 
+@settings(deadline=None)
 @given(count=st.integers(1, 2000), seed=st.integers(1, 2**31 - 1), step=st.integers(0, 10**9))
 def test_permutation_is_a_bijection(count: int, seed: int, step: int) -> None:
     permutation = random_solvent.permutation(count, CounterRandom(seed, step))
@@ -97,6 +98,18 @@ def test_a_shear_wave_lives_only_with_hydrodynamics(
     # decays by 1 % with hydrodynamics; the thermal noise is sqrt(2 / 5120) = 0.02
     assert (amplitude > 0.85) == kept
     assert kept or abs(amplitude) < 0.12
+
+
+def test_shuffle_comes_after_rotation_and_thermostat() -> None:
+    scenes = [
+        Bulk.make(length=8, width=8, thermostat="layer", hydrodynamics=h, sampling_interval=1)
+        for h in ("on", "shuffle")
+    ]
+    on, shuffled = (ReferenceEngine(scene) for scene in scenes)
+    on.advance(1)
+    shuffled.advance(1)
+    permutation = random_solvent.permutation(len(on.fluid_velocities), CounterRandom(1, 0))
+    np.testing.assert_array_equal(shuffled.fluid_velocities, on.fluid_velocities[permutation])
 
 
 def test_shuffle_conserves_momentum_and_energy() -> None:

@@ -1,8 +1,10 @@
 """Streaming and bounce-back: by hand, against brute force, and the paper's printed forms."""
 
+import functools
+
 import numpy as np
 import pytest
-from hypothesis import given
+from hypothesis import given, settings
 from hypothesis import strategies as st
 from numpy.typing import NDArray
 
@@ -65,6 +67,7 @@ def test_two_walls_in_one_step() -> None:
     a_x=st.floats(-2, 2),
     a_y=st.floats(0, 2),
 )
+@settings(deadline=None, max_examples=50)
 def test_against_brute_force(y: float, v_x: float, v_y: float, a_x: float, a_y: float) -> None:
     # a_y pushes to the upper wall: towards the lower one no particle turns back on its own, unless
     # it would dip through it and come back within the step, which streaming says it does not see
@@ -85,6 +88,7 @@ def test_against_brute_force(y: float, v_x: float, v_y: float, a_x: float, a_y: 
     a_y=st.floats(-5, 5),
     time=st.floats(0.001, 0.5),
 )
+@settings(deadline=None)
 def test_ends_between_the_walls(y: float, v_y: float, a_y: float, time: float) -> None:
     # the speed at a contact is at least 0.05: fewer than time a_y / (2 x 0.05) = 25 bounces
     r, v = streamed(column(0, y), column(0.3, v_y), column(0.1, a_y), time, 10.0)
@@ -114,14 +118,18 @@ class TestErrata:
 
     x, y, v_x, v_y, g, time = 0.4, 0.3, 0.8, -1.0, 2.0, 1.0
 
-    def truth(self, steps: int = 400_000) -> tuple[float, float]:
+    steps = 100_000  # the brute-force bounce is late by at most 1e-5: x and v_x by less than 1e-4
+
+    @classmethod
+    @functools.cache
+    def truth(cls) -> tuple[float, float]:
         r, v = brute_force(
-            column(self.x, self.y),
-            column(self.v_x, self.v_y),
-            column(self.g, 0),
-            self.time,
+            column(cls.x, cls.y),
+            column(cls.v_x, cls.v_y),
+            column(cls.g, 0),
+            cls.time,
             10.0,
-            steps,
+            cls.steps,
         )
         return r[0, 0], v[0, 0]
 
@@ -129,7 +137,7 @@ class TestErrata:
         r, v = streamed(
             column(self.x, self.y), column(self.v_x, self.v_y), column(self.g, 0), self.time, 10.0
         )
-        np.testing.assert_allclose((r[0, 0], v[0, 0]), self.truth(), atol=2e-5)
+        np.testing.assert_allclose((r[0, 0], v[0, 0]), self.truth(), atol=1e-4)
 
     def test_printed_3_12_and_3_13(self) -> None:
         v_contact = self.v_x + self.g * self.time
@@ -146,7 +154,7 @@ class TestErrata:
             + self.g * (self.time - 2 * t_c) ** 2 / 2
         )
         v = -v_contact + self.g * (self.time - t_c)
-        np.testing.assert_allclose((x, v), self.truth(), atol=2e-5)
+        np.testing.assert_allclose((x, v), self.truth(), atol=1e-4)
 
     def test_3_44(self) -> None:
         # y + v t + F t^2 / (2 m) = 0 with F = -1.5 towards the wall at y = 0

@@ -9,7 +9,7 @@ from lammps_inputs import Bulk
 from lammps_inputs.scene import Thermostat
 from srd_driver.reference import ReferenceEngine, thermostats
 from srd_driver.reference.collision import Cells
-from srd_driver.reference.counter_random import CounterRandom
+from srd_driver.reference.counter_random import CounterRandom, Stream
 
 Array = NDArray[np.float64]
 
@@ -56,6 +56,34 @@ def test_andersen_redraws_its_share_and_leaves_the_rest() -> None:
     # 4.5 standard errors, and Kolmogorov-Smirnov at 1e-5: false alarms below once in 1e4 changes
     assert abs(redrawn.shape[1] / 1e5 - share) < 4.5 * np.sqrt(share * (1 - share) / 1e5)
     assert all(kstest(component, "norm").pvalue > 1e-5 for component in redrawn)
+
+
+def test_andersen_draws_the_documented_words() -> None:
+    velocities, random = np.full((3, 500), 9.0), CounterRandom(1, 4)
+    thermostats.andersen(velocities, 2.0, random)
+    chosen = random.uniform(Stream.THERMOSTAT, 500)[0] < thermostats.ANDERSEN_FREQUENCY * 2.0
+    normals = random.normal(Stream.THERMOSTAT, 500, block=1)[:3]
+    np.testing.assert_array_equal(velocities, np.where(chosen, normals, 9.0))
+
+
+def test_monte_carlo_draws_the_documented_words() -> None:
+    # each cell on its own, in plain Python; the last has one particle and is left alone
+    state = np.random.default_rng(2)
+    numbers = np.append(np.repeat(np.arange(40), 4), 40)
+    velocities = state.normal(size=(2, 161))
+    expected, random = velocities.copy(), CounterRandom(1, 4)
+    thermostats.monte_carlo(velocities, Cells((41, 1), numbers), random)
+    accepted = 0
+    for cell, u in enumerate(random.uniform(Stream.THERMOSTAT, 40).T):
+        own = expected[:, 4 * cell : 4 * cell + 4]
+        mean = own.mean(axis=1, keepdims=True)
+        energy = ((own - mean) ** 2).sum() / 2
+        scale = 1 + 0.1 * u[0] if u[1] < 0.5 else 1 / (1 + 0.1 * u[0])
+        if u[2] < scale ** (2 * 3) * np.exp(-(scale**2 - 1) * energy):
+            own[:] = mean + scale * (own - mean)
+            accepted += 1
+    assert 0 < accepted < 40
+    np.testing.assert_allclose(velocities, expected, rtol=1e-12)
 
 
 def test_acceptance_is_the_boltzmann_ratio() -> None:

@@ -27,8 +27,35 @@ Point = tuple[int, Rotation, float, float, float]  # dimension, rotation, n_f, a
 GRID: list[Point] = [
     *product((2,), ("coordinate_axes",), (3, 10), (60, 90, 130), (0.05, 0.2, 0.5)),
     *product((3,), ("coordinate_axes",), (3, 10), (90,), (0.05, 0.2, 0.5)),
-    *product((3,), ("random_axis",), (10,), (60, 130), (0.05, 0.2, 0.5)),
+    *product((3,), ("random_axis",), (10,), (60, 130), (0.2, 0.5)),
 ]
+
+
+@pytest.mark.parametrize(
+    ("density", "collision_time", "printed"), [(10, 0.1, 0.755), (5, 0.1, 0.6802)]
+)
+def test_theory_of_figures_3_6_and_3_7(
+    density: float, collision_time: float, printed: float
+) -> None:
+    assert viscosity(density, collision_time, 90) == pytest.approx(printed, abs=0.0006)
+
+
+def test_hecht_28_is_the_limit_of_full_cells() -> None:
+    def printed(m: float, tau: float) -> float:
+        collisional = (1 - (1 - math.exp(-m)) / m) / (18 * tau)
+        return collisional + tau * (m + 2) / (4 * (m - 1))
+
+    assert printed(2.5, 0.6) * 0.6 == pytest.approx(0.3052, abs=5e-5)  # (29), in a^2 / delta t
+    assert viscosity(1e4, 0.6, 90, 3) == pytest.approx(printed(1e4, 0.6), rel=1e-7)
+    assert viscosity(2.5, 0.6, 90, 3) < 0.95 * printed(2.5, 0.6)
+
+
+def test_random_axis_by_180_degrees_has_the_integer_form() -> None:
+    # cos = -1 and 1: the angular factors of the kinetic and collisional parts are 2 and 2
+    m, tau = 7.0, 0.3
+    p = (m - 1 + math.exp(-m)) / m
+    expected = tau / 2 * (5 / (2 * p) - 1) + 2 * p / (18 * tau)
+    assert viscosity(m, tau, 180, 3, "random_axis") == pytest.approx(expected, rel=1e-12)
 
 
 def bulk(point: Point, length: int = 24) -> Bulk:
@@ -41,9 +68,9 @@ def bulk(point: Point, length: int = 24) -> Bulk:
     return Bulk.make(
         dimension=dimension,
         rotation=rotation,
-        length=length if dimension == 2 else 12,
+        length=length if dimension == 2 else 8,
         width=48 if kinetic else 24,
-        height=None if dimension == 2 else 12,
+        height=None if dimension == 2 else 8,
         density=density,
         angle=angle,
         collision_time=collision_time,
@@ -59,7 +86,8 @@ def measured_viscosity(engine: ReferenceEngine, chaos: bool = False) -> tuple[fl
     Kicks keep a shear wave at its amplitude A. With a = (2 / N) sum v_x sin(k y), one interval is
     a' = exp(-nu k^2 Delta) (a + kick) + xi, xi the thermal noise, which is white over more than a
     sound period. The sums of both sides give nu; the error is that of the block sums of the
-    residuals. The run is as long as theory says that the error takes: 4 / (N A^2 nu k^2 error^2).
+    residuals. The run is as long as theory says that the error takes: 4 / (N A^2 nu k^2 error^2);
+    and not below 1500 t0, because the shift, one for all cells, is a noise that no N makes smaller.
     """
     scene = engine.scene
     assert isinstance(scene, Bulk)
@@ -71,7 +99,7 @@ def measured_viscosity(engine: ReferenceEngine, chaos: bool = False) -> tuple[fl
         scene.density, scene.collision_time, scene.angle, scene.dimension, scene.rotation
     )
     kick = scene.shear_wave * math.expm1(theory * interval)
-    duration = 4 / (scene.fluid_particles * scene.shear_wave**2 * theory * ERROR**2)
+    duration = max(1500.0, 4 / (scene.fluid_particles * scene.shear_wave**2 * theory * ERROR**2))
 
     def advance() -> None:
         for _ in range(KICK_INTERVAL):
@@ -102,7 +130,7 @@ def measured_viscosity(engine: ReferenceEngine, chaos: bool = False) -> tuple[fl
 @pytest.mark.parametrize("point", GRID, ids=str)
 def test_with_molecular_chaos_theory_holds(point: Point) -> None:
     # a long box in 2D: the fewer particles meet again by chance, the less is left of correlations
-    ratio, error = measured_viscosity(ReferenceEngine(bulk(point, length=96)), chaos=True)
+    ratio, error = measured_viscosity(ReferenceEngine(bulk(point, length=48)), chaos=True)
     print(f"\nchaos {point}: {ratio:.4f} +- {error:.4f} of theory", flush=True)
     # within 1 %, as far as the error tells: if theory is exact a false alarm is at 4.2 errors
     assert abs(ratio - 1) < 0.01 + 2 * error

@@ -117,9 +117,10 @@ def test_poiseuille_flow_of_the_paper(scene: Poiseuille, paper: float) -> None:
     for name, blocks in measured.items():
         values[name] = mean, error = blocks.mean(), blocks.std(ddof=1) / np.sqrt(len(blocks))
         print(f"{name}: {mean:.4f} +- {error:.4f}", flush=True)
-    # four errors and 1 %, the paper printing no error: a false alarm below once in 15 000 runs
+    # slip is most of what the paper's maxima have beyond theory; its Fig. 3.7 has 2.6 % more
     nu, error = values["nu of the maximum"]
-    assert abs(nu - paper) < 4 * error + 0.01 * paper
+    assert nu + 4 * error < theory
+    assert abs(nu - paper) < (theory - paper) / 3
     # (3.14) leaves a slip length of a0 / 4, where momentum moves by collisions in full cells; less
     # where n fluctuates and some of it flies (docs/reference.md)
     length, error = values["slip length"]
