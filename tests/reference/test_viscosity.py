@@ -31,6 +31,40 @@ GRID: list[Point] = [
 ]
 
 
+# The fluid's viscosity over that of theory, and its error, measured by `test_viscosity` itself (all
+# with SEED; docs/reference.md): what the method has, where molecular chaos does not hold.
+FLUID: dict[Point, tuple[float, float]] = {
+    (2, "coordinate_axes", 3, 60, 0.05): (1.0261, 0.0042),
+    (2, "coordinate_axes", 3, 60, 0.2): (1.2712, 0.0062),
+    (2, "coordinate_axes", 3, 60, 0.5): (1.1126, 0.0042),
+    (2, "coordinate_axes", 3, 90, 0.05): (0.9020, 0.0041),
+    (2, "coordinate_axes", 3, 90, 0.2): (1.1835, 0.0086),
+    (2, "coordinate_axes", 3, 90, 0.5): (1.1680, 0.0052),
+    (2, "coordinate_axes", 3, 130, 0.05): (0.8573, 0.0048),
+    (2, "coordinate_axes", 3, 130, 0.2): (1.0520, 0.0053),
+    (2, "coordinate_axes", 3, 130, 0.5): (1.0331, 0.0055),
+    (2, "coordinate_axes", 10, 60, 0.05): (0.9997, 0.0028),
+    (2, "coordinate_axes", 10, 60, 0.2): (1.0831, 0.0051),
+    (2, "coordinate_axes", 10, 60, 0.5): (1.0689, 0.0061),
+    (2, "coordinate_axes", 10, 90, 0.05): (0.9674, 0.0027),
+    (2, "coordinate_axes", 10, 90, 0.2): (1.0326, 0.0057),
+    (2, "coordinate_axes", 10, 90, 0.5): (1.1024, 0.0060),
+    (2, "coordinate_axes", 10, 130, 0.05): (0.9542, 0.0042),
+    (2, "coordinate_axes", 10, 130, 0.2): (1.0045, 0.0048),
+    (2, "coordinate_axes", 10, 130, 0.5): (1.0179, 0.0035),
+    (3, "coordinate_axes", 3, 90, 0.05): (0.9673, 0.0028),
+    (3, "coordinate_axes", 3, 90, 0.2): (1.0945, 0.0056),
+    (3, "coordinate_axes", 3, 90, 0.5): (1.0228, 0.0043),
+    (3, "coordinate_axes", 10, 90, 0.05): (0.9891, 0.0017),
+    (3, "coordinate_axes", 10, 90, 0.2): (1.0216, 0.0025),
+    (3, "coordinate_axes", 10, 90, 0.5): (1.0111, 0.0042),
+    (3, "random_axis", 10, 60, 0.2): (1.0217, 0.0036),
+    (3, "random_axis", 10, 60, 0.5): (1.0047, 0.0042),
+    (3, "random_axis", 10, 130, 0.2): (1.0114, 0.0028),
+    (3, "random_axis", 10, 130, 0.5): (1.0102, 0.0053),
+}
+
+
 @pytest.mark.parametrize(
     ("density", "collision_time", "printed"), [(10, 0.1, 0.755), (5, 0.1, 0.6802)]
 )
@@ -137,7 +171,10 @@ def test_with_molecular_chaos_theory_holds(point: Point) -> None:
 
 
 @pytest.mark.statistics
-@pytest.mark.parametrize("point", GRID, ids=str)
+@pytest.mark.parametrize("point", FLUID, ids=str)
 def test_viscosity(point: Point) -> None:
     ratio, error = measured_viscosity(ReferenceEngine(bulk(point)))
     print(f"\nfluid {point}: {ratio:.4f} +- {error:.4f} of theory", flush=True)
+    known, known_error = FLUID[point]
+    # four errors: for all points together a false alarm in one of 600 changes of the numbers
+    assert abs(ratio - known) < 4 * np.hypot(error, known_error)
