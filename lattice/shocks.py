@@ -213,7 +213,7 @@ def random_walk_conditions(model: LatticeGas, z1: float, z2: float) -> list[Cond
 
 
 def _exchange_rates(model: LatticeGas, species: str) -> tuple[float, float]:
-    """p of (2.109) and q of (2.110) for one species; the bare hops of A where there is no B.
+    """p of (2.109) and q of (2.110) for one species; the bare hops in an ASEP.
 
     Written for 24 free rates: the rate at which 0A (0B) is made from A0 and B0 in the product
     measure, and the mirror image, which PT invariance (2.85) turns into the printed sums.
@@ -221,8 +221,8 @@ def _exchange_rates(model: LatticeGas, species: str) -> tuple[float, float]:
     w, c = model.w, model.ratio
     if model.family == "asep":
         return w(2, 3), w(3, 2)
-    if model.family == "charge":  # no B: A are the particles
-        return w(4, 2), w(2, 4)
+    if model.family == "charge":  # without B the vacancies are the particles of fugacity z
+        return w(2, 4), w(4, 2)
     if species == "A":
         return w(2, 4) + c * w(2, 7), w(4, 2) + c * w(4, 3)
     return w(3, 7) + w(3, 4) / c, w(7, 3) + w(7, 2) / c
@@ -298,23 +298,16 @@ class ShockWalk:
         interior ((2.117) is printed upside down).  Raises `RateError` if it is not unique.
         """
         right, left = self._rates()
-        stuck = [0] if right[0] == 0 else []
-        stuck += [self.sites] if left[-1] == 0 else []
-        if len(stuck) == 2 or (self.hop_left == 0 and self.hop_right == 0):
+        up_only = np.flatnonzero((left == 0) & (right > 0))
+        down_only = np.flatnonzero((right == 0) & (left > 0))
+        first = int(up_only.max()) + 1 if up_only.size else 0  # positions below are left for good
+        last = int(down_only.min()) if down_only.size else self.sites  # and those above
+        if first > last or ((left == 0) & (right == 0)).any():
             raise RateError("the shock can rest at more than one place: no unique mixture")
-        weights = np.zeros(self.sites + 1)
-        if stuck:
-            weights[stuck[0]] = 1.0
-            return weights
-        with np.errstate(divide="ignore"):
-            steps = np.log(right) - np.log(left)  # one of d1, d2 may vanish
-        if np.isinf(steps).any():  # a one-sided walk: it stays where its last step and the end rate meet
-            occupied = (0, 1) if self.hop_right == 0 else (self.sites - 1, self.sites)
-            first, second = (left[0], right[0]) if self.hop_right == 0 else (left[-1], right[-1])
-            weights[list(occupied)] = np.array([first, second]) / (first + second)
-            return weights
+        steps = np.log(right[first:last]) - np.log(left[first:last])
         logarithm = np.concatenate([[0.0], np.cumsum(steps)])
-        weights = np.exp(logarithm - logarithm.max())
+        weights = np.zeros(self.sites + 1)
+        weights[first : last + 1] = np.exp(logarithm - logarithm.max())
         return np.asarray(weights / weights.sum())
 
     def distribution(self, start: int, time: float) -> Vector:
