@@ -299,16 +299,21 @@ def bond_currents(model: LatticeGas, sites: int, state: Vector) -> Vector:
 def species_currents(model: LatticeGas, sites: int, state: Vector) -> dict[str, Vector]:
     """Currents of A and of B over each bond, each of shape (L - 1,).
 
-    A reaction that changes the number of A on a bond is shared equally between its two sites, which
-    is the convention of (2.52), (2.53), (2.123) and (2.124).
+    Where C moves, a change of species is shared equally between the two sites; where it does not,
+    an exchange AB <-> BA carries both species and any other conversion none.  This is the
+    convention of (2.52), (2.53), (2.123) and (2.124).
     """
     s = model.size
     pairs = pair_probabilities(model, sites, state)
+    moves_c = np.subtract.outer(np.repeat(model.conserved, s), np.repeat(model.conserved, s)) != 0
+    mirror = np.arange(s * s).reshape(s, s).T.ravel()
+    counted = moves_c | np.eye(s * s, dtype=bool)[mirror]
     currents = {}
     for name in ("A", "B")[: s - 1]:
         present = np.array([float(label == name) for label in model.states])
         difference = (np.tile(present, s) - np.repeat(present, s)) / 2  # right minus left, halved
-        currents[name] = np.asarray(pairs @ (difference @ model.bulk))
+        carried = np.subtract.outer(difference, difference)  # of final and initial pair
+        currents[name] = np.asarray(pairs @ (np.where(counted, carried, 0) * model.bulk).sum(axis=0))
     return currents
 
 
