@@ -244,6 +244,19 @@ class LatticeGas:
         marginal = self.marginal(z)
         return float(self.bond_current() @ np.kron(marginal, marginal))
 
+    def with_reservoirs(self, z1: float, z2: float) -> LatticeGas:
+        """The same bulk, open, between reservoirs of fugacity z1 (left) and z2 (right).
+
+        Each end exchanges with a neighbour site that is always in the product measure, by the bulk
+        rates.  Where that measure is stationary the ends then satisfy (2.38)-(2.41) or (2.95)-(2.96)
+        by construction, and a shock that random-walks closes there with e0 = d2 and eL = d1, so
+        that (2.117), corrected, holds on 0..L.
+        """
+        blocks = self.bulk.reshape((self.size,) * 4)  # (left', right', left, right)
+        left = np.einsum("abcd,c->bd", blocks, self.marginal(z1))
+        right = np.einsum("abcd,d->ac", blocks, self.marginal(z2))
+        return replace(self, left=left, right=right)
+
     def reflected(self) -> LatticeGas:
         """The same process seen in a mirror: left and right exchanged."""
         order = np.arange(self.size**2).reshape(self.size, self.size).T.ravel()

@@ -81,6 +81,7 @@ def end_residual(model: LatticeGas, z: float, side: Side) -> Vector:
 def boundary_fugacity(model: LatticeGas, side: Side) -> float:
     """The fugacity that the boundary rates hold: common root of (2.38, 2.39) or their like.
 
+    Zero, which any end holds that brings in nothing else, is taken only if it is the only one.
     Raises `RateError` where the rates are inconsistent (no common root) or leave it open (several).
     """
     matrix = model.left if side == "left" else model.right
@@ -108,6 +109,7 @@ def boundary_fugacity(model: LatticeGas, side: Side) -> float:
         raise RateError(
             f"inconsistent boundaries: no fugacity solves the stationarity conditions of the {side} end"
         )
+    good = [root for root in good if root > CONTRADICTS] or good
     if good[-1] - good[0] > 1e-3 * (1 + good[0]):
         raise RateError(
             f"the {side} boundary rates are consistent with several fugacities ({good[0]:.6g}, "
