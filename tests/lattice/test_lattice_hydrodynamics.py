@@ -284,7 +284,7 @@ def test_domain_wall_refuses_an_unstable_step():
 
 @pytest.mark.parametrize(("name", "z1", "z2", "kind"), [
     ("two-sided", 0.2, 3.0, "shock"), ("two-sided", 3.0, 0.2, "rarefaction"),
-    ("internal-state", 2.5, 0.2, "rarefaction"), ("internal-state", 0.2, 2.5, "shock"),
+    ("internal-state", 2.5, 0.2, "rarefaction"), ("internal-state", 0.1, 0.5, "shock"),
 ])
 def test_godunov_against_monte_carlo_from_the_same_step(name, z1, z2, kind):
     model = CASES[name].gas.with_reservoirs(z1, z2)
@@ -302,7 +302,7 @@ def test_godunov_against_monte_carlo_from_the_same_step(name, z1, z2, kind):
     assert godunov_gap.mean() < 0.04
     start = np.where(result.x < 0.5, *result.densities)
     moved = np.abs(result.monte_carlo[0] - start).mean()
-    assert moved > 2 * gap.mean() or result.rankine_hugoniot == pytest.approx(0, abs=0.05)
+    assert moved > 2 * gap.mean()
 
 
 def test_step_refuses_rings_and_equal_sides():
