@@ -16,11 +16,11 @@ class Report:
     """Findings on a model at L = `sites` with fugacities z1 left and z2 right of the shock.
 
     Residuals are 1-norms on the full generator as fractions of the largest rate, 0 up to rounding
-    where the statement holds.  Pairs are (left, right); rates and currents in inverse units of time,
-    velocity in sites per unit of time, positive to the right.  Fields that need a shock are None if
-    z1 = z2, those that need ends on a ring too; the hopping rates are the nonnegative least-squares
-    solution where `random_walk_residual` does not vanish.  `stationary_profile` is None if more
-    than one stationary state can be reached, which `remarks` then says.
+    where the statement holds.  Pairs are (left, right); rates and currents in inverse units of
+    time, velocity in sites per unit of time, positive to the right.  Fields that need a shock are
+    None if z1 = z2, those that need ends on a ring too; the hopping rates are the nonnegative
+    least-squares solution where `random_walk_residual` does not vanish.  `stationary_profile` is
+    None if more than one stationary state can be reached, which `remarks` then says.
     """
 
     stationarity_residual: float
@@ -78,7 +78,8 @@ def check(
     marginals = np.array([model.marginal(z1), model.marginal(z2)])
     densities = {
         f"rho_{name}": (float(marginals[0, n]), float(marginals[1, n]))
-        for n, name in enumerate(model.states) if name != "0"
+        for n, name in enumerate(model.states)
+        if name != "0"
     }
     if start is None or times is None:
         positions = None
@@ -91,11 +92,11 @@ def check(
         stationarity_residual=stationarity,
         random_walk_residual=walk_residual,
         closes_at_ends=closed,
-        d1=walk and walk.hop_left,
-        d2=walk and walk.hop_right,
-        end_rates=walk and (walk.enter, walk.leave),
-        shock_velocity=walk and walk.velocity,
-        shock_diffusion=walk and walk.diffusion,
+        d1=None if walk is None else walk.hop_left,
+        d2=None if walk is None else walk.hop_right,
+        end_rates=None if walk is None else (walk.enter, walk.leave),
+        shock_velocity=None if walk is None else walk.velocity,
+        shock_diffusion=None if walk is None else walk.diffusion,
         currents=(model.current(z1), model.current(z2)),
         densities=densities,
         stationary_profile=_profile(model, sites, z1, z2, remarks),
@@ -133,8 +134,14 @@ def _contradictions(
 
 
 def _mean_positions(
-    model: LatticeGas, walk: shocks.ShockWalk, z1: float, z2: float,
-    start: int, times: list[float], *, exact: bool,
+    model: LatticeGas,
+    walk: shocks.ShockWalk,
+    z1: float,
+    z2: float,
+    start: int,
+    times: list[float],
+    *,
+    exact: bool,
 ) -> list[float]:
     sites = walk.sites
     initial: Vector = shocks.shock_vector(model, sites, start, z1, z2)

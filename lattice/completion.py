@@ -93,8 +93,10 @@ def complete_shock(
         )
     return ShockModel(
         family,
-        {**{name: solution[name] for name in names}, **({"c": ratio} if names[0][0] != "w" or
-           family == "internal-state" else {})},
+        {
+            **{name: solution[name] for name in names},
+            **({"c": ratio} if names[0][0] != "w" or family == "internal-state" else {}),
+        },
         {name: solution[name] for name in LEFT_NAMES},
         {name: solution[name] for name in RIGHT_NAMES},
         z1,
@@ -125,8 +127,13 @@ class _Equations:
     """The conditions as a homogeneous linear map of (rates, D, d1, d2, end rates)."""
 
     def __init__(
-        self, family: Literal["charge", "internal-state"], names: tuple[str, ...], ratio: float,
-        z1: float, z2: float, ends: bool,
+        self,
+        family: Literal["charge", "internal-state"],
+        names: tuple[str, ...],
+        ratio: float,
+        z1: float,
+        z2: float,
+        ends: bool,
     ) -> None:
         self.bulk_names, self.ends, self.ratio = names, ends, ratio
         self.rate_names = (*names, *LEFT_NAMES, *RIGHT_NAMES)
@@ -144,7 +151,7 @@ class _Equations:
 
     def _residuals(self, unknowns: Vector) -> Vector:
         rate = dict(zip(self.rate_names, unknowns, strict=False))
-        d_a, d_b, d1, d2, e0, el = unknowns[len(self.rate_names):]
+        d_a, d_b, d1, d2, e0, el = unknowns[len(self.rate_names) :]
         field = np.insert([d_a, d_b], self.vacant, 0.0)
         bulk = generator_matrix(self.size**2, self._pairs(rate))
         left = generator_matrix(self.size, self._end(rate, "alpha", "gamma"))
@@ -154,8 +161,10 @@ class _Equations:
         rows = [bulk @ np.kron(p, p) - telescoping * np.kron(p, p) for p in (one, two)]
         here = np.kron(one, two)
         rows.append(
-            bulk @ here - (telescoping - field @ one + field @ two) * here
-            - d1 * (np.kron(two, two) - here) - d2 * (np.kron(one, one) - here)
+            bulk @ here
+            - (telescoping - field @ one + field @ two) * here
+            - d1 * (np.kron(two, two) - here)
+            - d2 * (np.kron(one, one) - here)
         )
         rows.append(left @ one + (field - field @ one) * one)
         rows.append(right @ two - (field - field @ two) * two)
@@ -192,15 +201,18 @@ def _solve(equations: _Equations, given: Mapping[str, float]) -> dict[str, float
     spread = np.hstack([-np.eye(count), np.zeros((count, 6)), np.eye(count)])
     result = linprog(
         np.concatenate([np.zeros(width), -np.ones(count)]),
-        A_ub=spread, b_ub=np.zeros(count),
-        A_eq=np.hstack([matrix, np.zeros((len(matrix), count))]), b_eq=np.zeros(len(matrix)),
-        bounds=bounds, method="highs",
+        A_ub=spread,
+        b_ub=np.zeros(count),
+        A_eq=np.hstack([matrix, np.zeros((len(matrix), count))]),
+        b_eq=np.zeros(len(matrix)),
+        bounds=bounds,
+        method="highs",
     )
     if result.status == 2:  # infeasible
         return None
     if not result.success:
         raise RuntimeError(f"linear programme: {result.message}")
-    unknowns = np.asarray(result.x[:width])
+    unknowns = np.array(result.x, dtype=float)[:width]
     # the programme is solved to 1e-7; put the unknowns that are free and not at a bound on the
     # equations to rounding
     fixed = np.array([n in given for n in names] + [False] * 6)

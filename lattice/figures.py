@@ -30,15 +30,19 @@ def _c_label(model: LatticeGas) -> str:
 
 
 def space_time(model: LatticeGas, ensemble: Ensemble, path: Path) -> None:
-    """Configurations of one replica, time upwards, with the fitted shock position if there is one."""
+    """Configurations of one replica, time upwards, with its fitted shock position if any."""
     figure = Figure(figsize=(6, 4), layout="constrained")
     axes = figure.subplots()
     sites, times = ensemble.history.shape[1], ensemble.times
     width = max(1, sites // 500)  # average C over blocks, or single sites would alias on the page
     blocks = ensemble.history[:, : sites // width * width].reshape(len(times), -1, width)
     image = axes.imshow(
-        model.conserved[blocks].mean(axis=2), origin="lower", aspect="auto", cmap="RdBu_r",
-        interpolation="nearest", extent=(0.5, sites + 0.5, times[0], times[-1]),
+        model.conserved[blocks].mean(axis=2),
+        origin="lower",
+        aspect="auto",
+        cmap="RdBu_r",
+        interpolation="nearest",
+        extent=(0.5, sites + 0.5, times[0], times[-1]),
     )
     figure.colorbar(image, label=_c_label(model))
     if ensemble.positions is not None:
@@ -75,7 +79,9 @@ def simulation(
     times = ensemble.times
     count = len(ensemble.positions)
     spread = ensemble.positions.std(axis=0, ddof=1)
-    mean_axes.errorbar(times, ensemble.positions.mean(axis=0), spread / np.sqrt(count), fmt=".", ms=3)
+    mean_axes.errorbar(
+        times, ensemble.positions.mean(axis=0), spread / np.sqrt(count), fmt=".", ms=3
+    )
     mean_axes.plot(times, start + (d2 - d1) * times, "k-", lw=1)
     mean_axes.set(xlabel="time t", ylabel="mean shock position")
     variance = spread**2
@@ -86,7 +92,14 @@ def simulation(
 
 
 def _walk_profile(
-    model: LatticeGas, sites: int, z1: float, z2: float, start: int, d1: float, d2: float, time: float
+    model: LatticeGas,
+    sites: int,
+    z1: float,
+    z2: float,
+    start: int,
+    d1: float,
+    d2: float,
+    time: float,
 ) -> Vector:
     """Profile of C after a walk that has not met the ends: a Skellam displacement of the step."""
     from scipy.stats import poisson, skellam
@@ -122,8 +135,14 @@ def hydrodynamics(
         (line,) = axes.plot(result.x, result.godunov[row], lw=1, label=f"Godunov, t' = {time:g}")
         axes.plot(result.x, result.exact[row], "--", lw=0.8, color=line.get_color())
         if result.monte_carlo is not None:
-            axes.plot(result.x, result.monte_carlo[row], ".", ms=3, color=line.get_color(),
-                      label="Monte Carlo")
+            axes.plot(
+                result.x,
+                result.monte_carlo[row],
+                ".",
+                ms=3,
+                color=line.get_color(),
+                label="Monte Carlo",
+            )
     axes.set(xlabel="x = k/L", ylabel=_c_label(model), title="dashed: exact Riemann solution")
     axes.legend(fontsize=8)
     _save(figure, folder / "step.png")
@@ -131,7 +150,9 @@ def hydrodynamics(
 
 
 def phase_diagram(
-    relation: hydro.CurrentRelation, path: Path, mark: tuple[float, float] | None = None,
+    relation: hydro.CurrentRelation,
+    path: Path,
+    mark: tuple[float, float] | None = None,
     label: str = "density",
 ) -> None:
     """Boundary-induced phases over the reservoir densities, with the first-order line."""
@@ -141,15 +162,27 @@ def phase_diagram(
     figure = Figure(figsize=(5.2, 4.4), layout="constrained")
     axes = figure.subplots()
     axes.imshow(
-        phases, origin="lower", extent=(u[0], u[-1], u[0], u[-1]), aspect="auto",
-        cmap=ListedColormap(_PHASE_COLOURS), vmin=-0.5, vmax=3.5, interpolation="nearest",
+        phases,
+        origin="lower",
+        extent=(u[0], u[-1], u[0], u[-1]),
+        aspect="auto",
+        cmap=ListedColormap(_PHASE_COLOURS),
+        vmin=-0.5,
+        vmax=3.5,
+        interpolation="nearest",
     )
     for number, name in enumerate(hydro.PHASES):
         where = phases == number
         if where.mean() > 0.02:
             text = f"{name} reservoir" if number < 2 else name
-            axes.text(float(left[where].mean()), float(right[where].mean()), text,
-                      ha="center", va="center", fontsize=8)
+            axes.text(
+                float(left[where].mean()),
+                float(right[where].mean()),
+                text,
+                ha="center",
+                va="center",
+                fontsize=8,
+            )
     # first-order line: the two reservoirs change places where both carry the Godunov flux
     tie = relation.flux(left) - relation.flux(right)
     border = np.isin(phases, (0, 1)) & (np.abs(left - right) > 2 * (u[1] - u[0]))

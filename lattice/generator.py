@@ -65,7 +65,7 @@ def _check_sites(sites: int) -> None:
 
 
 def matrix_bytes(model: LatticeGas, sites: int) -> float:
-    """Memory in bytes that assembling the stored generator of `sites` sites takes (CSR, 3 copies)."""
+    """Memory in bytes to assemble the stored generator of `sites` sites (CSR, 3 copies)."""
     s = model.size
     per_state = 1.0 + (sites - 1) * np.count_nonzero(model.bulk) / s**2
     if model.left is not None and model.right is not None:
@@ -144,9 +144,9 @@ def operator(model: LatticeGas, sites: int) -> LinearOperator[np.float64]:
 
 def product_vector(marginals: Iterable[Vector]) -> Vector:
     """Tensor product (2.20) of single-site probabilities given site by site, shape (s^L,)."""
-    vector = np.ones(1)
+    vector: Vector = np.ones(1)
     for marginal in marginals:
-        vector = np.kron(vector, marginal)
+        vector = np.asarray(np.kron(vector, marginal))
     return vector
 
 
@@ -164,7 +164,8 @@ def evolve(model: LatticeGas, sites: int, initial: Vector, times: Iterable[float
 
     Uniformisation: exp(W t) = sum_n Poisson(n; R t) (1 + W/R)^n, R the bound on exit rates.  Every
     term is nonnegative, so no cancellation occurs, and the sum is cut
-    where the Poisson weights left out add up to less than 1e-17.  Matrix-free.  Raises `TooLarge`, `ValueError`.
+    where the Poisson weights left out add up to less than 1e-17.  Matrix-free.
+    Raises `TooLarge`, `ValueError`.
     """
     moments = [float(t) for t in times]
     if any(b < a for a, b in zip([0.0, *moments], moments, strict=False)):
@@ -188,7 +189,8 @@ def evolve(model: LatticeGas, sites: int, initial: Vector, times: Iterable[float
 
 def _reachable(matrix: sparse.csr_array, start: NDArray[np.bool_]) -> NDArray[np.bool_]:
     """Configurations that can be reached from those of `start`."""
-    links = (matrix != 0).astype(np.int32)
+    ones = np.ones(matrix.nnz, np.int32)
+    links = sparse.csr_array((ones, matrix.indices, matrix.indptr), shape=matrix.shape)
     reached = start
     while True:
         wider = reached | (links @ reached.astype(np.int32) > 0)
@@ -265,30 +267,33 @@ def _solve(product: Any, start: Vector, bound: float, tolerance: float) -> Vecto
     state = start
     for _ in range(60):
         state, _info = gmres(
-            shifted, -bound * start, x0=state, rtol=0.0,
-            atol=0.01 * tolerance * bound / np.sqrt(start.size), restart=_RESTART, maxiter=5,
+            shifted,
+            -bound * start,
+            x0=state,
+            rtol=0.0,
+            atol=0.01 * tolerance * bound / np.sqrt(start.size),
+            restart=_RESTART,
+            maxiter=5,
         )
         state = state / state.sum()
         residual = float(np.abs(product(state)).sum())
         if residual < tolerance * bound:
             return np.asarray(state)
-    raise NotConverged(f"stationary state: |W P|_1 = {residual:.2e} after {60 * 5 * _RESTART} steps")
+    raise NotConverged(
+        f"stationary state: |W P|_1 = {residual:.2e} after {60 * 5 * _RESTART} steps"
+    )
 
 
 def site_probabilities(model: LatticeGas, sites: int, state: Vector) -> Vector:
     """Probability of each state at each site, shape (L, s)."""
     s = model.size
-    return np.array([
-        state.reshape(s**k, s, -1).sum(axis=(0, 2)) for k in range(sites)
-    ])
+    return np.array([state.reshape(s**k, s, -1).sum(axis=(0, 2)) for k in range(sites)])
 
 
 def pair_probabilities(model: LatticeGas, sites: int, state: Vector) -> Vector:
     """Probability of each pair state (2.1) at each bond (k, k+1), shape (L - 1, s^2)."""
     s = model.size
-    return np.array([
-        state.reshape(s**k, s * s, -1).sum(axis=(0, 2)) for k in range(sites - 1)
-    ])
+    return np.array([state.reshape(s**k, s * s, -1).sum(axis=(0, 2)) for k in range(sites - 1)])
 
 
 def bond_currents(model: LatticeGas, sites: int, state: Vector) -> Vector:
@@ -313,7 +318,9 @@ def species_currents(model: LatticeGas, sites: int, state: Vector) -> dict[str, 
         present = np.array([float(label == name) for label in model.states])
         difference = (np.tile(present, s) - np.repeat(present, s)) / 2  # right minus left, halved
         carried = np.subtract.outer(difference, difference)  # of final and initial pair
-        currents[name] = np.asarray(pairs @ (np.where(counted, carried, 0) * model.bulk).sum(axis=0))
+        currents[name] = np.asarray(
+            pairs @ (np.where(counted, carried, 0) * model.bulk).sum(axis=0)
+        )
     return currents
 
 

@@ -29,7 +29,8 @@ def stationary_particle_density(sigma: Vector, r: float) -> Vector:
     sigma = np.asarray(sigma, dtype=float)
     return np.asarray(
         (4 * r + sigma**2) / (4 * r + np.sqrt(4 * r + (1 - 4 * r) * sigma**2))
-        if r > 0 else np.abs(sigma)
+        if r > 0
+        else np.abs(sigma)
     )
 
 
@@ -56,9 +57,11 @@ class CurrentRelation:
         return np.array(sorted(roots))
 
     def godunov_flux(self, left: Vector, right: Vector) -> Vector:
-        """Flux at x = 0 of the Riemann problem left | right: min of j on [left, right] if left <=
-        right, else its maximum.  With reservoirs for `left` and `right` it is the current of the
-        open chain (extremal-current principle)."""
+        """Flux at x = 0 of the Riemann problem left | right, arrays of one shape.
+
+        The minimum of j on [left, right] if left <= right, else its maximum.  With reservoirs for
+        `left` and `right` it is the current of the open chain (extremal-current principle).
+        """
         rising = left <= right
         ends = self.flux(left), self.flux(right)
         result = np.where(rising, np.minimum(*ends), np.maximum(*ends))
@@ -76,7 +79,7 @@ class CurrentRelation:
         return float((jump[1] - jump[0]) / (right - left))
 
     def burgers(self, around: float) -> CurrentRelation:
-        """Burgers limit: j to second order about `around`, so that v = j'(u) obeys v_t + v v_x = 0."""
+        """Burgers limit: j to second order about `around`; v = j'(u) then obeys v_t + v v_x = 0."""
         point = np.array(around)
         h = 1e-4 * (self.high - self.low)
         j, slope = float(self.flux(point)), float(self.speed(point))
@@ -84,7 +87,8 @@ class CurrentRelation:
         return CurrentRelation(
             lambda u: j + slope * (u - around) + bend * (u - around) ** 2 / 2,
             lambda u: slope + bend * (u - around),
-            self.low, self.high,
+            self.low,
+            self.high,
         )
 
 
@@ -114,9 +118,7 @@ def current_relation(model: LatticeGas) -> CurrentRelation:
         return CurrentRelation(flux, speed, -1.0, 1.0)
     # one density only: j = drive * u (1 - u), read off at u = 1/2 where (1 + c) z = 1
     drive = 4 * model.current(1 / (1 + model.ratio))
-    return CurrentRelation(
-        lambda u: drive * u * (1 - u), lambda u: drive * (1 - 2 * u), 0.0, 1.0
-    )
+    return CurrentRelation(lambda u: drive * u * (1 - u), lambda u: drive * (1 - 2 * u), 0.0, 1.0)
 
 
 def solve(
@@ -128,7 +130,7 @@ def solve(
     """Entropy solution of (2.60) at increasing `times` from cell averages, shape (T, N).
 
     First-order Godunov scheme on N equal cells of [0, 1] at Courant number 0.9: monotone, so shocks
-    carry no oscillation and move at the Rankine-Hugoniot velocity, and rarefactions are not expansion
+    carry no oscillation, move at the Rankine-Hugoniot velocity, and rarefactions are no expansion
     shocks.  `reservoirs` are the densities outside x = 0 and x = 1; without them the chain is a
     ring.  Raises `RateError` for densities outside the range of the relation.
     """
@@ -181,7 +183,7 @@ def breaking_time(relation: CurrentRelation, x: Vector, u: Vector) -> float:
 PHASES = ("left", "right", "maximal current", "minimal current")
 
 
-def phase(relation: CurrentRelation, left: NDArray[np.float64], right: NDArray[np.float64]) -> NDArray[np.int64]:
+def phase(relation: CurrentRelation, left: Vector, right: Vector) -> NDArray[np.int64]:
     """Boundary-induced phase of the open chain between two reservoirs, index into `PHASES`.
 
     The bulk takes the density of the left or of the right reservoir, or the one at an extremum
@@ -196,13 +198,19 @@ def phase(relation: CurrentRelation, left: NDArray[np.float64], right: NDArray[n
 
 
 def coexistence_density(relation: CurrentRelation, left: float) -> float:
-    """Right reservoir density that puts `left` on the first-order line: same current, so that the
-    shock between them has no bias.  Raises `RateError` where no other density carries that current."""
+    """Right reservoir density that puts `left` on the first-order line.
+
+    It carries the same current, so that the shock between them has no bias.  Raises `RateError`
+    where no other density does.
+    """
     grid = np.linspace(relation.low, relation.high, _GRID)
     excess = relation.flux(grid) - float(relation.flux(np.array(left)))
     roots = [
-        brentq(lambda u: float(relation.flux(np.array(u)) - relation.flux(np.array(left))),
-               grid[i], grid[i + 1])
+        brentq(
+            lambda u: float(relation.flux(np.array(u)) - relation.flux(np.array(left))),
+            grid[i],
+            grid[i + 1],
+        )
         for i in np.flatnonzero(excess[:-1] * excess[1:] < 0)
     ]
     others = [u for u in roots if abs(u - left) > 1e-3]
@@ -214,8 +222,8 @@ def coexistence_density(relation: CurrentRelation, left: float) -> float:
 def domain_wall(model: LatticeGas, sites: int, z1: float, z2: float) -> ShockWalk:
     """Domain-wall picture: the shock as a walk with rates j_i / (density jump), ends included.
 
-    d1 = j_1/(u_2 - u_1) to the left, d2 = j_2/(u_2 - u_1) to the right.  Exact for the one-sided and
-    the internal-state shock; for the two-sided charge shock only d2 - d1 is, and off the shock
+    d1 = j_1/(u_2 - u_1) to the left, d2 = j_2/(u_2 - u_1) to the right.  Exact for the one-sided
+    and the internal-state shock; for the two-sided charge shock only d2 - d1 is, and off the shock
     manifold it is an approximation.  Raises `RateError` where the rates would be negative.
     """
     jump = model.density(z2) - model.density(z1)

@@ -1,9 +1,9 @@
 """Matrix-product stationary state of the open ASEP, as independent truth up to L of order 10^3.
 
 Weights of configurations are <W| X_1 ... X_L |V> with X = D on a particle and E on a vacancy, where
-D E - (q/p) E D = D + E, <W|(alpha E - gamma D) = p <W|, (beta D - delta E)|V> = p |V>.  D and E act
-here as the tridiagonal matrices of Uchiyama, Sasamoto and Wadati (J. Phys. A 37, 4985 (2004)), in the
-basis where <W| and |V> are the first unit vector: L sites need only the first L + 1 rows.
+D E - (q/p) E D = D + E, <W|(alpha E - gamma D) = p <W|, (beta D - delta E)|V> = p |V>.  Here D and
+E act as the tridiagonal matrices of Uchiyama, Sasamoto and Wadati (J. Phys. A 37, 4985 (2004)), in
+the basis where <W| and |V> are the first unit vector: L sites need only the first L + 1 rows.
 
 Nothing is shared with `lattice.generator`: no vector of configurations appears.
 """
@@ -45,9 +45,18 @@ class _Algebra:
 
         def diagonal(b: float, d: float, a: float, c: float) -> Vector:
             s, t = b + d, b * d * (a + c)
-            values = before / ((1 - before**2 * product) * even) * (
-                t + s * q - product * s * before - (t + product * s) * qn - t * q * qn
-                + product * t * before * qn + product * s * squared
+            values = (
+                before
+                / ((1 - before**2 * product) * even)
+                * (
+                    t
+                    + s * q
+                    - product * s * before
+                    - (t + product * s) * qn
+                    - t * q * qn
+                    + product * t * before * qn
+                    + product * s * squared
+                )
             )
             values[0] = (s - t) / (1 - product)
             return np.asarray(values)

@@ -63,16 +63,25 @@ BULK_NAMES: dict[Family, tuple[str, ...]] = {
     ),
     "asep": ("w32", "w23"),  # right and left hop; pairs 1..4 are 00, 0A, A0, AA
 }
-#: PT-invariant rates of the internal-state family: name -> [(w, power of c)], (2.86) with w85 = c r6.
+#: PT-invariant internal-state rates: name -> [(w, power of c)], (2.86) with w85 = c r6.
 PT_RATES: dict[str, tuple[tuple[str, int], ...]] = {
-    **{f"r{i}": ((f"w{a}", 0), (f"w{b}", 1)) for i, a, b in (
-        (1, 47, 32), (2, 43, 72), (3, 23, 74), (4, 27, 34), (5, 58, 65), (6, 56, 85),
-        (8, 89, 96), (9, 69, 98),
-    )},
+    **{
+        f"r{i}": ((f"w{a}", 0), (f"w{b}", 1))
+        for i, a, b in (
+            (1, 47, 32),
+            (2, 43, 72),
+            (3, 23, 74),
+            (4, 27, 34),
+            (5, 58, 65),
+            (6, 56, 85),
+            (8, 89, 96),
+            (9, 69, 98),
+        )
+    },
     "r7": (("w59", 0), ("w95", 2)),
     **{f"h{i}": ((f"w{a}", 0),) for i, a in ((1, 42), (2, 73), (3, 24), (4, 86), (5, 68), (6, 37))},
 }
-#: Boundary rates as (final state, initial state): number 1 is 0 -> 1, 2 is 0 -> 2, 3 is 1 -> 2 (2.2).
+#: Boundary rates as (final, initial) state: number 1 is 0 -> 1, 2 is 0 -> 2, 3 is 1 -> 2 (2.2).
 TRANSITIONS = {"1": (1, 0), "2": (2, 0), "3": (2, 1)}
 LEFT_NAMES = tuple(f"{side}{i}" for side in ("alpha", "gamma") for i in TRANSITIONS)
 RIGHT_NAMES = tuple(f"{side}{i}" for side in ("delta", "beta") for i in TRANSITIONS)
@@ -89,7 +98,9 @@ def pair_label(number: int, family: Family) -> str:
     return states[first] + states[second]
 
 
-def _checked(rates: Mapping[str, float], allowed: tuple[str, ...], family: Family) -> dict[str, float]:
+def _checked(
+    rates: Mapping[str, float], allowed: tuple[str, ...], family: Family
+) -> dict[str, float]:
     """Nonnegative finite rates by name, with zero for the names left out."""
     for name, value in rates.items():
         if name not in allowed:
@@ -108,7 +119,7 @@ def _unknown(name: str, allowed: tuple[str, ...], family: Family) -> str:
     digits = name[1:]
     if name[:1] == "w" and len(digits) == 2 and digits.isdigit():
         final, initial = int(digits[0]), int(digits[1])
-        if 1 <= min(final, initial) and max(final, initial) <= count and final != initial:
+        if final != initial and {final, initial} <= set(range(1, count + 1)):
             before, after = pair_label(initial, family), pair_label(final, family)
             return (
                 f"rate {name} ({before} -> {after}) breaks the conservation law (2.4) of the "
@@ -138,7 +149,9 @@ def bulk_matrix(family: Family, rates: Mapping[str, float]) -> Vector:
     )
 
 
-def boundary_matrix(family: Family, rates: Mapping[str, float], side: Literal["left", "right"]) -> Vector:
+def boundary_matrix(
+    family: Family, rates: Mapping[str, float], side: Literal["left", "right"]
+) -> Vector:
     """Generator of one boundary site, -b1 of (2.18) or -bL of (2.19) with its misprint corrected.
 
     Entry (3, 2) of (2.19) is printed beta3; it is delta3, or the columns do not add up to zero.
@@ -248,8 +261,8 @@ class LatticeGas:
         """The same bulk, open, between reservoirs of fugacity z1 (left) and z2 (right).
 
         Each end exchanges with a neighbour site that is always in the product measure, by the bulk
-        rates.  Where that measure is stationary the ends then satisfy (2.38)-(2.41) or (2.95)-(2.96)
-        by construction, and a shock that random-walks closes there with e0 = d2 and eL = d1, so
+        rates.  Where that measure is stationary the ends satisfy (2.38)-(2.41) or (2.95)-(2.96) by
+        construction, and a shock that random-walks closes there with e0 = d2 and eL = d1, so
         that (2.117), corrected, holds on 0..L.
         """
         blocks = self.bulk.reshape((self.size,) * 4)  # (left', right', left, right)
@@ -348,9 +361,9 @@ def internal_ratio(w: Mapping[str, float]) -> float:
     """Ratio c of B to A at which the conversions A <-> B balance in the product measure (2.88).
 
     Every order in z must balance by itself.  Beside a vacancy that is linear in c,
-    w32 + w34 + w72 + w74 = c (w23 + w27 + w43 + w47); between particles it is the quadratic equation
-    of AA -> AB, BA, BB and back.  Without PT invariance these two are the condition on c that (2.85)
-    solves.  Raises `RateError` where c is undetermined.
+    w32 + w34 + w72 + w74 = c (w23 + w27 + w43 + w47); between particles it is the quadratic
+    equation of AA -> AB, BA, BB and back.  (2.85) solves both; without PT invariance they are
+    the condition on c.  Raises `RateError` where c is undetermined.
     """
     gain = w["w32"] + w["w34"] + w["w72"] + w["w74"]
     loss = w["w23"] + w["w27"] + w["w43"] + w["w47"]
@@ -389,9 +402,7 @@ def internal_state_gas(
         c = w.pop("c")
         if "c" not in rates:
             c = internal_ratio(w)
-    return _assemble(
-        "internal-state", bulk_matrix("internal-state", w), left, right, (1.0, 1.0, c)
-    )
+    return _assemble("internal-state", bulk_matrix("internal-state", w), left, right, (1.0, 1.0, c))
 
 
 def asep(

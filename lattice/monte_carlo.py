@@ -100,8 +100,17 @@ _next = njit(inline="always")(_next)
 
 
 def _advance(
-    state: Any, attempts: Any, words: Any, size: Any, periodic: Any, left_clocks: Any, clocks: Any,
-    threshold: Any, target: Any, carried: Any, flux: Any,
+    state: Any,
+    attempts: Any,
+    words: Any,
+    size: Any,
+    periodic: Any,
+    left_clocks: Any,
+    clocks: Any,
+    threshold: Any,
+    target: Any,
+    carried: Any,
+    flux: Any,
 ) -> None:
     """`attempts` attempted updates of `state` in place; `flux` adds up C carried over each bond."""
     sites = state.size
@@ -127,7 +136,9 @@ def _advance(
         else:
             kind, site = (1, 0) if bond == 0 else (2, sites - 1)
             old = np.int64(state[site])
-            new = np.int64(target[kind, old, column, np.int64(height >= threshold[kind, old, column])])
+            new = np.int64(
+                target[kind, old, column, np.int64(height >= threshold[kind, old, column])]
+            )
             if new != old:
                 state[site] = new
                 flux[bond] += carried[kind, old, new]
@@ -164,7 +175,7 @@ def shock_evidence(model: LatticeGas, z1: float, z2: float) -> Vector:
         raise RateError(f"z1 = z2 = {z1}: there is no shock")
     with np.errstate(divide="ignore", invalid="ignore"):
         evidence = np.log(model.marginal(z1)) - np.log(model.marginal(z2))
-    return np.clip(np.nan_to_num(evidence, nan=0.0), -1000.0, 1000.0)
+    return np.asarray(np.clip(np.nan_to_num(evidence, nan=0.0), -1000.0, 1000.0))
 
 
 @dataclass(frozen=True)
@@ -174,7 +185,7 @@ class Ensemble:
     `occupation` (T, L, s): fraction of replicas with each state; `by_replica` (R, L, s): the same
     averaged over times, per replica; `current` (R, L + 1): mean current of C from the first to the
     last time, per replica, over bond k between sites k and k + 1 (0 and L: the ends; on a ring 0
-    joins L and 1 and L is unused); `positions` (R, T): fitted shock positions, None if not asked for;
+    joins L and 1 and L is unused); `positions` (R, T): fitted shock positions, if asked for;
     `history` (T, L): configurations of replica 0; `attempts`: attempted updates in all.
     """
 
@@ -210,9 +221,9 @@ def simulate(
 
     Each replica starts from its own draw of `initial` at time 0 and is sampled at the increasing
     `times`.  With `evidence` (from `shock_evidence`) the shock position is fitted to every sample:
-    the posterior mean of k, all k equally likely before, given the configuration and the two product
-    measures.  Replica i draws from `numpy.random.SeedSequence([seed, i])`, so the result depends on
-    the seed only, not on `workers`, the number of threads (default: all cores).
+    the posterior mean of k, all k equally likely before, given the configuration and the two
+    product measures.  Replica i draws from `numpy.random.SeedSequence([seed, i])`, so the result
+    depends on the seed only, not on `workers`, the number of threads (default: all cores).
     Raises `ValueError` on times, replicas or shapes, `generator.TooLarge`.
     """
     moments = np.asarray(times, dtype=float)
@@ -245,8 +256,17 @@ def simulate(
         for sample, time in enumerate(moments):
             attempts = int(rng.poisson(tables.clock * clocks * (time - now)))
             _advance(
-                state, attempts, words, size, model.periodic, left, clocks,
-                tables.threshold, tables.target, tables.carried, flux,
+                state,
+                attempts,
+                words,
+                size,
+                model.periodic,
+                left,
+                clocks,
+                tables.threshold,
+                tables.target,
+                tables.carried,
+                flux,
             )
             if sample == 0:
                 flux[:] = 0
@@ -272,8 +292,13 @@ def simulate(
             if replica == 0:
                 first = history
     return Ensemble(
-        moments, occupation / replicas, by_replica, current,
-        None if evidence is None else positions, first, attempts,
+        moments,
+        occupation / replicas,
+        by_replica,
+        current,
+        None if evidence is None else positions,
+        first,
+        attempts,
     )
 
 
@@ -290,8 +315,8 @@ class WalkEstimate:
 def estimate_walk(times: Vector, positions: Vector) -> WalkEstimate:
     """v_s and D_s of random walkers from fitted positions, shape (R, T), at uniform times.
 
-    Given k the configuration is distributed as |k>, so the error of the fit does not depend on k: it
-    shifts the mean and adds a constant to the variance.  Hence v_s is the mean displacement from
+    Given k the configuration is distributed as |k>, so the error of the fit does not depend on k:
+    it shifts the mean and adds a constant to the variance.  Hence v_s is the mean displacement from
     first to last time, and D_s the difference of the displacement variances at two lags, 2n and n
     samples with n a tenth of the run, over 2 n dt, which is free of the constant.  Errors: standard
     error and jackknife over replicas.  Raises `ValueError` with fewer than 3 times or 2 replicas.
@@ -314,12 +339,14 @@ def estimate_walk(times: Vector, positions: Vector) -> WalkEstimate:
         for n, (first, second) in zip((lag, 2 * lag), sums, strict=True):
             mean = drift * n * step
             variances.append(float((second[keep] - 2 * mean * first[keep] + mean**2).mean()))
-        return (variances[1] - variances[0]) / (2 * lag * step)
+        return float((variances[1] - variances[0]) / (2 * lag * step))
 
     everyone = np.ones(replicas, dtype=bool)
     without = np.array([diffusion(np.arange(replicas) != i) for i in range(replicas)])
     spread = np.sqrt((replicas - 1) / replicas * ((without - without.mean()) ** 2).sum())
     return WalkEstimate(
-        float(velocity.mean()), float(velocity.std(ddof=1) / np.sqrt(replicas)),
-        diffusion(everyone), float(spread),
+        float(velocity.mean()),
+        float(velocity.std(ddof=1) / np.sqrt(replicas)),
+        diffusion(everyone),
+        float(spread),
     )

@@ -99,15 +99,19 @@ def boundary_fugacity(model: LatticeGas, side: Side) -> float:
         equation = inflow * nu + sign * (field[state] * nu - mean) * weights[state]
         equation = equation.trim(1e-14 * model.scale)
         candidates = [] if equation.degree() == 0 else list(equation.roots())
-        roots += [max(float(c.real), 0.0) for c in candidates
-                  if abs(c.imag) < 1e-6 * (1 + abs(c)) and c.real > -1e-9]
+        roots += [
+            max(float(c.real), 0.0)
+            for c in candidates
+            if abs(c.imag) < 1e-6 * (1 + abs(c)) and c.real > -1e-9
+        ]
     good = sorted(
-        root for root in roots
+        root
+        for root in roots
         if np.abs(end_residual(model, root, side)).max() < CONTRADICTS * model.scale
     )
     if not good:
         raise RateError(
-            f"inconsistent boundaries: no fugacity solves the stationarity conditions of the {side} end"
+            f"inconsistent boundaries: no fugacity solves the conditions of the {side} end"
         )
     good = [root for root in good if root > CONTRADICTS] or good
     if good[-1] - good[0] > 1e-3 * (1 + good[0]):
@@ -123,15 +127,15 @@ def stationarity_conditions(model: LatticeGas, z1: float, z2: float) -> list[Con
     conditions = _bulk_conditions(model)
     if model.periodic:
         return conditions
-    equations = {
+    equations: dict[str, dict[Side, tuple[str, ...]]] = {
         "charge": {"left": ("2.38", "2.39"), "right": ("2.40", "2.41")},
         "internal-state": {"left": ("2.95", "2.96"), "right": ("2.95", "2.96")},
         "asep": {"left": ("2.95",), "right": ("2.95",)},
-    }[model.family]
+    }
     ends: tuple[tuple[Side, float], ...] = (("left", z1), ("right", z2))
     for side, z in ends:
         residual = end_residual(model, z, side)
-        for state, equation in zip((0, 2), equations[side], strict=False):
+        for state, equation in zip((0, 2), equations[model.family][side], strict=False):
             statement = f"{side} end keeps the density of {model.states[state]} at z = {z:.6g}"
             conditions.append(Condition(equation, statement, float(residual[state])))
     return conditions
@@ -146,11 +150,13 @@ def _bulk_conditions(model: LatticeGas) -> list[Condition]:
             return []
         driving = w(2, 4) - w(4, 2) + w(6, 8) - w(8, 6) + w(7, 3) - w(3, 7)
         reaction = (w(3, 5) * w(5, 7) - w(5, 3) * w(7, 5)) / (w(3, 5) + w(7, 5))
-        return [Condition(
-            "2.36",
-            "w24 - w42 + w68 - w86 + w73 - w37 = (w35 w57 - w53 w75)/(w35 + w75)",
-            driving - reaction,
-        )]
+        return [
+            Condition(
+                "2.36",
+                "w24 - w42 + w68 - w86 + w73 - w37 = (w35 w57 - w53 w75)/(w35 + w75)",
+                driving - reaction,
+            )
+        ]
     c = model.ratio
     e = w(2, 4) + w(3, 4) + w(7, 4) - w(4, 2) - c * (w(4, 3) + w(4, 7))
     e_left = w(2, 4) + c * (w(2, 3) + w(2, 7)) - w(4, 2) - w(3, 2) - w(7, 2)
@@ -187,8 +193,10 @@ def random_walk_conditions(model: LatticeGas, z1: float, z2: float) -> list[Cond
             ]
         if z1 == 0:
             return [
-                *(Condition("2.74, mirrored", f"w{i}{j} = 0", w(i, j))
-                  for i, j in ((4, 2), (7, 3), (5, 3))),
+                *(
+                    Condition("2.74, mirrored", f"w{i}{j} = 0", w(i, j))
+                    for i, j in ((4, 2), (7, 3), (5, 3))
+                ),
                 Condition("2.75", "w86 = w68", w(8, 6) - w(6, 8)),
             ]
         p, q, r, x = w(2, 4), w(4, 2), model.ratio, z2 / z1
@@ -200,8 +208,11 @@ def random_walk_conditions(model: LatticeGas, z1: float, z2: float) -> list[Cond
             Condition("2.174", "w35 + w75 = X/(1+X)^2 (w53 + w57)", scale * (r - x / (1 + x) ** 2)),
             Condition("2.171", "w37 = w24 - (1+X) w35", w(3, 7) - p + (1 + x) * w(3, 5)),
             Condition("2.172", "w73 = w42 - (1+X) w75/X", w(7, 3) - q + (1 + x) * w(7, 5) / x),
-            Condition("2.173 corrected", "w57 = X w53 + w42 (X-1)(1+X)^2",
-                      w(5, 7) - x * w(5, 3) - q * (x - 1) * (1 + x) ** 2),
+            Condition(
+                "2.173 corrected",
+                "w57 = X w53 + w42 (X-1)(1+X)^2",
+                w(5, 7) - x * w(5, 3) - q * (x - 1) * (1 + x) ** 2,
+            ),
         ]
     p, q = _exchange_rates(model, "A")
     conditions = [Condition("2.111", "p z1 = q z2", p * z1 - q * z2)]
@@ -385,9 +396,7 @@ def closes(residuals: Vector) -> bool:
     return bool(max(residuals[0], residuals[-1]) < HOLDS)
 
 
-def equimolar_position(
-    model: LatticeGas, sites: int, state: Vector, z1: float, z2: float
-) -> float:
+def equimolar_position(model: LatticeGas, sites: int, state: Vector, z1: float, z2: float) -> float:
     """Shock position at which |k> holds as much of the conserved quantity as `state` does.
 
     Equals the mean of k in every mixture of shock measures, and stays defined when the state is

@@ -1,4 +1,4 @@
-"""The step z1 | z2 on the Euler scale: Godunov, exact Riemann solution and Monte Carlo side by side."""
+"""The step z1 | z2 on the Euler scale: Godunov, exact solution and Monte Carlo side by side."""
 
 from __future__ import annotations
 
@@ -16,8 +16,8 @@ from lattice.models import LatticeGas, RateError, Vector
 class StepEvolution:
     """A step in the middle of an open chain between reservoirs z1 and z2.
 
-    `wave` is "shock", "rarefaction" or "compound"; pairs are (left, right); speeds in sites per unit
-    of time, positive to the right.  Profiles of the conserved density have shape (T, N) at the
+    `wave` is "shock", "rarefaction" or "compound"; pairs are (left, right); speeds in sites per
+    unit of time, positive to the right.  Profiles of the conserved density have shape (T, N) at the
     macroscopic `times` t/L and the cell centres `x`; `monte_carlo` has standard errors beside it.
     `domain_wall_rates` and `hopping_rates` are (left, right), None where they do not exist.
     """
@@ -48,10 +48,14 @@ class StepEvolution:
 
 
 def wave(relation: hydro.CurrentRelation, left: float, right: float) -> str:
-    """What a step becomes: "shock" where j lies on the stable side of its chord all along (Oleinik),
-    "rarefaction" where characteristics fan out all along, "compound" otherwise."""
+    """What a step becomes.
+
+    "shock" where j lies on the stable side of its chord all along (Oleinik), "rarefaction" where
+    characteristics fan out all along, "compound" otherwise.
+    """
     u = np.linspace(left, right, 2001)
-    chord = np.linspace(*relation.flux(np.array([left, right])), u.size)
+    ends = relation.flux(np.array([left, right]))
+    chord = np.linspace(ends[0], ends[1], u.size)
     excess = (relation.flux(u) - chord) * np.sign(right - left)
     if excess.min() > -1e-12:
         return "shock"
@@ -71,8 +75,8 @@ def evolve_step(
     """Solve (2.60) from the step z1 | z2 at x = 1/2 to macroscopic `times`.
 
     With `replicas` > 1, Monte Carlo runs of `sites` sites from the shock measure |L/2> with the
-    model's own ends are averaged over the sites of each cell.  The exact Riemann solution is that of
-    the infinite line.  Raises `RateError` for z1 = z2 or a ring, `ValueError`.
+    model's own ends are averaged over the sites of each cell.  The exact Riemann solution is that
+    of the infinite line.  Raises `RateError` for z1 = z2 or a ring, `ValueError`.
     """
     if model.periodic or z1 == z2:
         raise RateError("the step z1 | z2 needs an open chain and z1 different from z2")
@@ -117,8 +121,14 @@ def evolve_step(
 
 
 def _monte_carlo(
-    model: LatticeGas, z1: float, z2: float, times: Vector, cells: int, sites: int,
-    replicas: int, seed: int,
+    model: LatticeGas,
+    z1: float,
+    z2: float,
+    times: Vector,
+    cells: int,
+    sites: int,
+    replicas: int,
+    seed: int,
 ) -> tuple[Vector, Vector]:
     """Cell averages of C over replicas and their standard error, each (T, N)."""
     initial = shocks.shock_marginals(model, sites, sites // 2, z1, z2)

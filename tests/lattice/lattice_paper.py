@@ -86,18 +86,22 @@ def stationary_charge(seed: int = 1) -> Case:
     b3 /= 10
     b2 = (d2 + d3 * z - (fp - mean) * m) / m - b3
     b1 = (d1 + d2 - b2 * m + (f - mean)) / z
-    left = dict(alpha1=a1, alpha2=a2, alpha3=a3, gamma1=g1, gamma2=g2, gamma3=g3)
-    right = dict(delta1=d1, delta2=d2, delta3=d3, beta1=b1, beta2=b2, beta3=b3)
+    left = {"alpha1": a1, "alpha2": a2, "alpha3": a3, "gamma1": g1, "gamma2": g2, "gamma3": g3}
+    right = {"delta1": d1, "delta2": d2, "delta3": d3, "beta1": b1, "beta2": b2, "beta3": b3}
     return Case(w, left, right, z, z, r, charge_gas(w, left, right))
 
 
 def shock_charge(kind: str) -> Case:
     """Model with a one-sided or a two-sided shock, both closing at the ends."""
-    ends = dict(left={"alpha3": 0.2}, right={"delta3": 0.3, "beta2": 0.4})
+    ends = {"left": {"alpha3": 0.2}, "right": {"delta3": 0.3, "beta2": 0.4}}
     if kind == "one-sided":
         model = complete_shock(
-            "charge", 0.8, 0.0, {"w42": 1.1, "w53": 0.9, "w35": 0.3, "w75": 0.2, "w86": 0.4},
-            ratio=0.5 / 0.9, **ends,
+            "charge",
+            0.8,
+            0.0,
+            {"w42": 1.1, "w53": 0.9, "w35": 0.3, "w75": 0.2, "w86": 0.4},
+            ratio=0.5 / 0.9,
+            **ends,
         )
     else:
         model = complete_shock("charge", 0.6, 0.84, {"w42": 1.1, "w53": 0.4, "w35": 0.3}, **ends)
@@ -109,12 +113,32 @@ def shock_charge(kind: str) -> Case:
 def internal_rates(h: dict[str, float], c: float) -> dict[str, float]:
     """The 24 rates of (2.86), with w85 = c r6."""
     r = {i: h[f"r{i}"] for i in range(1, 10)}
-    return dict(
-        w47=r[1], w32=c * r[1], w43=r[2], w72=c * r[2], w23=r[3], w74=c * r[3], w27=r[4],
-        w34=c * r[4], w58=r[5], w65=c * r[5], w56=r[6], w85=c * r[6], w59=r[7], w95=c**2 * r[7],
-        w89=r[8], w96=c * r[8], w69=r[9], w98=c * r[9], w42=h["h1"], w73=h["h2"], w24=h["h3"],
-        w86=h["h4"], w68=h["h5"], w37=h["h6"],
-    )
+    return {
+        "w47": r[1],
+        "w32": c * r[1],
+        "w43": r[2],
+        "w72": c * r[2],
+        "w23": r[3],
+        "w74": c * r[3],
+        "w27": r[4],
+        "w34": c * r[4],
+        "w58": r[5],
+        "w65": c * r[5],
+        "w56": r[6],
+        "w85": c * r[6],
+        "w59": r[7],
+        "w95": c**2 * r[7],
+        "w89": r[8],
+        "w96": c * r[8],
+        "w69": r[9],
+        "w98": c * r[9],
+        "w42": h["h1"],
+        "w73": h["h2"],
+        "w24": h["h3"],
+        "w86": h["h4"],
+        "w68": h["h5"],
+        "w37": h["h6"],
+    }
 
 
 def drive(h: dict[str, float], c: float) -> tuple[float, float]:
@@ -132,8 +156,16 @@ def stationary_internal(seed: int = 2) -> Case:
     h = {name: float(rng.uniform(0.5, 1.5)) for name in names}
     c, z = (float(x) for x in rng.uniform(0.5, 1.5, 2))
     h["h4"] = -(
-        h["h6"] - h["h2"] + h["h1"] - h["h3"] - h["h5"] + (1 + c) * (h["r1"] - h["r3"])
-        + (1 - c) * (h["r4"] - h["r2"]) + c * (h["r8"] - h["r9"]) + h["r6"] - h["r5"]
+        h["h6"]
+        - h["h2"]
+        + h["h1"]
+        - h["h3"]
+        - h["h5"]
+        + (1 + c) * (h["r1"] - h["r3"])
+        + (1 - c) * (h["r4"] - h["r2"])
+        + c * (h["r8"] - h["r9"])
+        + h["r6"]
+        - h["r5"]
     )
     if h["h4"] < 0:
         h["h5"], h["h4"] = h["h5"] - h["h4"] + 0.3, 0.3
@@ -148,17 +180,32 @@ def stationary_internal(seed: int = 2) -> Case:
     d1, d2, d3, b3 = (float(x) for x in rng.uniform([3, 3, 1, 0.3], [4, 4, 1.5, 0.4]))
     b2 = (d2 + d3 * z - (mean - ep) * c * z) / (c * z) - b3
     b1 = (d1 + d2 + mean - b2 * c * z) / z
-    left = dict(alpha1=a1, alpha2=a2, alpha3=a3, gamma1=g1, gamma2=g2, gamma3=g3)
-    right = dict(delta1=d1, delta2=d2, delta3=d3, beta1=b1, beta2=b2, beta3=b3)
+    left = {"alpha1": a1, "alpha2": a2, "alpha3": a3, "gamma1": g1, "gamma2": g2, "gamma3": g3}
+    right = {"delta1": d1, "delta2": d2, "delta3": d3, "beta1": b1, "beta2": b2, "beta3": b3}
     gas = internal_state_gas({**h, "c": c}, left, right)
     return Case(internal_rates(h, c), left, right, z, z, c, gas, h)
 
 
 def shock_internal() -> Case:
     """Internal-state model with a shock that closes at the ends."""
-    given = dict(h1=0.2, r2=0.3, r4=0.4, r1=0.3, r3=0.2, r5=0.2, r6=0.15, r7=0.1, r8=0.1, r9=0.2)
+    given = {
+        "h1": 0.2,
+        "r2": 0.3,
+        "r4": 0.4,
+        "r1": 0.3,
+        "r3": 0.2,
+        "r5": 0.2,
+        "r6": 0.15,
+        "r7": 0.1,
+        "r8": 0.1,
+        "r9": 0.2,
+    }
     model = complete_shock(
-        "internal-state", 0.5, 1.3, {**given, "c": 0.7}, left={"alpha3": 0.2},
+        "internal-state",
+        0.5,
+        1.3,
+        {**given, "c": 0.7},
+        left={"alpha3": 0.2},
         right={"delta3": 0.3},
     )
     c = model.rates["c"]

@@ -129,9 +129,16 @@ def test_correlations_against_direct_sums():
     table = state.reshape((3,) * 4)
     value = case.gas.conserved
     grids = np.meshgrid(value, value, value, value, indexing="ij")
-    expected = np.array([[
-        (table * grids[i] * grids[j]).sum() - (table * grids[i]).sum() * (table * grids[j]).sum()
-        for j in range(4)] for i in range(4)])
+    expected = np.array(
+        [
+            [
+                (table * grids[i] * grids[j]).sum()
+                - (table * grids[i]).sum() * (table * grids[j]).sum()
+                for j in range(4)
+            ]
+            for i in range(4)
+        ]
+    )
     assert np.abs(generator.connected_correlation(case.gas, 4, state) - expected).max() < 1e-14
     uniform = generator.product_vector([case.gas.marginal(0.7)] * 4)
     off_diagonal = generator.connected_correlation(case.gas, 4, uniform)[~np.eye(4, dtype=bool)]

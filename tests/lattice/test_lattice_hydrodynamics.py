@@ -1,4 +1,4 @@
-"""Hydrodynamics: j(u), Riemann problems, Godunov, phases, and where the domain-wall picture ends."""
+"""Hydrodynamics: j(u), Riemann problems, Godunov, phases, limits of the domain-wall picture."""
 
 import numpy as np
 import pytest
@@ -13,8 +13,10 @@ from lattice.models import RateError, asep, charge_gas
 from lattice.step import evolve_step, wave
 
 CASES = {
-    "charge": stationary_charge(1), "two-sided": shock_charge("two-sided"),
-    "one-sided": shock_charge("one-sided"), "internal-state": stationary_internal(2),
+    "charge": stationary_charge(1),
+    "two-sided": shock_charge("two-sided"),
+    "one-sided": shock_charge("one-sided"),
+    "internal-state": stationary_internal(2),
     "internal-state shock": shock_internal(),
 }
 
@@ -66,14 +68,17 @@ def test_godunov_flux_against_a_scan(left, right):
     assert found == pytest.approx(scan, abs=1e-7)
 
 
-@pytest.mark.parametrize(("relation", "left", "right", "kind"), [
-    (hydro.current_relation(asep(1, 0, 0.5, 0.5)), 0.1, 0.7, "shock"),
-    (hydro.current_relation(asep(1, 0, 0.5, 0.5)), 0.9, 0.2, "rarefaction"),
-    (wavy(), -0.9, 0.8, "compound"),
-    (wavy(), 0.9, -0.7, "compound"),
-    (hydro.current_relation(CASES["two-sided"].gas), 0.6, -0.5, None),
-    (hydro.current_relation(CASES["charge"].gas), -0.5, 0.6, None),
-])
+@pytest.mark.parametrize(
+    ("relation", "left", "right", "kind"),
+    [
+        (hydro.current_relation(asep(1, 0, 0.5, 0.5)), 0.1, 0.7, "shock"),
+        (hydro.current_relation(asep(1, 0, 0.5, 0.5)), 0.9, 0.2, "rarefaction"),
+        (wavy(), -0.9, 0.8, "compound"),
+        (wavy(), 0.9, -0.7, "compound"),
+        (hydro.current_relation(CASES["two-sided"].gas), 0.6, -0.5, None),
+        (hydro.current_relation(CASES["charge"].gas), -0.5, 0.6, None),
+    ],
+)
 def test_godunov_converges_to_the_exact_riemann_solution(relation, left, right, kind):
     assert kind in (None, wave(relation, left, right))
     errors = []
@@ -282,10 +287,15 @@ def test_domain_wall_refuses_an_unstable_step():
 # --- against Monte Carlo ---
 
 
-@pytest.mark.parametrize(("name", "z1", "z2", "kind"), [
-    ("two-sided", 0.2, 3.0, "shock"), ("two-sided", 3.0, 0.2, "rarefaction"),
-    ("internal-state", 2.5, 0.2, "rarefaction"), ("internal-state", 0.1, 0.5, "shock"),
-])
+@pytest.mark.parametrize(
+    ("name", "z1", "z2", "kind"),
+    [
+        ("two-sided", 0.2, 3.0, "shock"),
+        ("two-sided", 3.0, 0.2, "rarefaction"),
+        ("internal-state", 2.5, 0.2, "rarefaction"),
+        ("internal-state", 0.1, 0.5, "shock"),
+    ],
+)
 def test_godunov_against_monte_carlo_from_the_same_step(name, z1, z2, kind):
     model = CASES[name].gas.with_reservoirs(z1, z2)
     relation = hydro.current_relation(model)

@@ -40,17 +40,31 @@ def case(request):
 def test_2_4_2_79_rates_are_those_the_conservation_law_allows(family):
     c = CONSERVED[family]
     total = [c[a] + c[b] for a in range(3) for b in range(3)]
-    allowed = {f"w{i + 1}{j + 1}" for i in range(9) for j in range(9)
-               if i != j and total[i] == total[j]}
+    allowed = {
+        f"w{i + 1}{j + 1}" for i in range(9) for j in range(9) if i != j and total[i] == total[j]
+    }
     assert set(BULK_NAMES[family]) == allowed
     assert len(allowed) == {"charge": 10, "internal-state": 24}[family]
     assert 72 - len(allowed) == {"charge": 62, "internal-state": 48}[family]
 
 
 def test_2_79_labels():
-    table = {"w42": "0A A0", "w73": "0B B0", "w86": "AB BA", "w47": "B0 A0", "w43": "0B A0",
-             "w74": "A0 B0", "w27": "B0 0A", "w58": "BA AA", "w56": "AB AA", "w59": "BB AA",
-             "w89": "BB BA", "w69": "BB AB", "w32": "0A 0B", "w65": "AA AB"}
+    table = {
+        "w42": "0A A0",
+        "w73": "0B B0",
+        "w86": "AB BA",
+        "w47": "B0 A0",
+        "w43": "0B A0",
+        "w74": "A0 B0",
+        "w27": "B0 0A",
+        "w58": "BA AA",
+        "w56": "AB AA",
+        "w59": "BB AA",
+        "w89": "BB BA",
+        "w69": "BB AB",
+        "w32": "0A 0B",
+        "w65": "AA AB",
+    }
     for name, text in table.items():
         initial, final = text.split()
         assert pair_label(int(name[2]), "internal-state") == initial
@@ -116,14 +130,23 @@ def test_2_89_to_2_93_hatted_generator_annihilates_the_measure(case, sites):
     field = e * number(case, "A") + ep * number(case, "B")
     measure = product([case.weights1] * sites)
     for i in range(1, sites):
-        hat = (-act(pair_matrix(case.w), i, sites, measure)
-               - act(field, i, sites, measure) + act(field, i + 1, sites, measure))
+        hat = (
+            -act(pair_matrix(case.w), i, sites, measure)
+            - act(field, i, sites, measure)
+            + act(field, i + 1, sites, measure)
+        )
         assert size_of(hat) < case.bound
     g = -(e + c * ep) * z / case.nu1  # of (2.92): <b^1 + g> = 0
-    left = (-act(end_matrix(case, "left"), 1, sites, measure)
-            + act(field, 1, sites, measure) + g * measure)
-    right = (-act(end_matrix(case, "right"), sites, sites, measure)
-             - act(field, sites, sites, measure) - g * measure)
+    left = (
+        -act(end_matrix(case, "left"), 1, sites, measure)
+        + act(field, 1, sites, measure)
+        + g * measure
+    )
+    right = (
+        -act(end_matrix(case, "right"), sites, sites, measure)
+        - act(field, sites, sites, measure)
+        - g * measure
+    )
     assert size_of(left) < case.bound
     assert size_of(right) < case.bound
 
@@ -134,11 +157,24 @@ def test_2_94_off_the_condition_the_product_measure_fails(case, sites, name):
     h = {**case.h, name: case.h[name] + 0.1}
     model = internal_state_gas({**h, "c": case.ratio}, case.left, case.right)
     c = case.ratio
-    printed = (h["h6"] - h["h2"] + h["h1"] - h["h3"] + h["h4"] - h["h5"]
-               + (1 + c) * (h["r1"] - h["r3"]) + (1 - c) * (h["r4"] - h["r2"])
-               + c * (h["r8"] - h["r9"]) + h["r6"] - h["r5"])
-    found = [x.residual for x in shocks.stationarity_conditions(model, case.z1, case.z1)
-             if x.equation == "2.94"]
+    printed = (
+        h["h6"]
+        - h["h2"]
+        + h["h1"]
+        - h["h3"]
+        + h["h4"]
+        - h["h5"]
+        + (1 + c) * (h["r1"] - h["r3"])
+        + (1 - c) * (h["r4"] - h["r2"])
+        + c * (h["r8"] - h["r9"])
+        + h["r6"]
+        - h["r5"]
+    )
+    found = [
+        x.residual
+        for x in shocks.stationarity_conditions(model, case.z1, case.z1)
+        if x.equation == "2.94"
+    ]
     assert np.abs(found) == pytest.approx([abs(printed)] * 2, abs=1e-13)
     assert abs(printed) > WRONG
     assert shocks.stationarity_residual(model, sites, case.z1, case.z1) > WRONG
@@ -159,17 +195,33 @@ def boundary_sides(case):
     """The three sides of (2.95) and of (2.96), as printed and with alpha3 z nu, delta3 z nu."""
     h, c, z, nu = case.h, case.ratio, case.z1, case.nu1
     first = (h["h1"] - h["h3"] + c * (2 * (h["r2"] - h["r4"]) + h["h2"] - h["h6"])) * z
-    second = ((-h["r5"] + h["r6"] + c * (h["r8"] - h["r9"]) + h["h4"] - h["h5"]) * z
-              - h["r1"] + h["r2"] + h["r3"] - h["r4"] + h["h2"] - h["h6"]) * c * z
+    second = (
+        (
+            (-h["r5"] + h["r6"] + c * (h["r8"] - h["r9"]) + h["h4"] - h["h5"]) * z
+            - h["r1"]
+            + h["r2"]
+            + h["r3"]
+            - h["r4"]
+            + h["h2"]
+            - h["h6"]
+        )
+        * c
+        * z
+    )
     left_b = (case.gamma2 + case.gamma3) * c * z * nu - case.alpha2 * nu
     right_b = -(case.beta2 + case.beta3) * c * z * nu + case.delta2 * nu
     return {
-        "2.95": (first,
-                 case.gamma1 * z * nu + case.gamma2 * c * z * nu - (case.alpha1 + case.alpha2) * nu,
-                 -case.beta1 * z * nu - case.beta2 * c * z * nu + (case.delta1 + case.delta2) * nu),
+        "2.95": (
+            first,
+            case.gamma1 * z * nu + case.gamma2 * c * z * nu - (case.alpha1 + case.alpha2) * nu,
+            -case.beta1 * z * nu - case.beta2 * c * z * nu + (case.delta1 + case.delta2) * nu,
+        ),
         "2.96": (second, left_b - case.alpha3 * z * nu, right_b + case.delta3 * z * nu),
-        "2.96 printed": (second, left_b - case.alpha3 * z * (1 + z) * nu,
-                         right_b + case.delta3 * z * (1 + z) * nu),
+        "2.96 printed": (
+            second,
+            left_b - case.alpha3 * z * (1 + z) * nu,
+            right_b + case.delta3 * z * (1 + z) * nu,
+        ),
     }
 
 
@@ -192,14 +244,18 @@ def test_2_62_2_97_shock_random_walks(sites):
     d2 = WALKER.p_q[0] * WALKER.nu1 / WALKER.nu2
     for k in range(1, sites):
         change = full_flow(WALKER, sites, shock(WALKER, sites, k))
-        walk = (d1 * shock(WALKER, sites, k - 1) + d2 * shock(WALKER, sites, k + 1)
-                - (d1 + d2) * shock(WALKER, sites, k))
+        walk = (
+            d1 * shock(WALKER, sites, k - 1)
+            + d2 * shock(WALKER, sites, k + 1)
+            - (d1 + d2) * shock(WALKER, sites, k)
+        )
         assert size_of(change - walk) < WALKER.bound
         assert size_of(change) > WRONG * WALKER.gas.scale
 
 
 WALKER.p_q = (
-    WALKER.h["h3"] + WALKER.ratio * WALKER.h["r4"], WALKER.h["h1"] + WALKER.ratio * WALKER.h["r2"]
+    WALKER.h["h3"] + WALKER.ratio * WALKER.h["r4"],
+    WALKER.h["h1"] + WALKER.ratio * WALKER.h["r2"],
 )
 
 
@@ -210,18 +266,24 @@ def test_2_98_to_2_101_ends_of_the_shock(sites):
     field = e * number(case, "A") + ep * number(case, "B")
     g = [(e + c * ep) * z / nu for z, nu in ((case.z1, case.nu1), (case.z2, case.nu2))]
     state = shock(case, sites, max(1, sites // 2))
-    left = (-act(end_matrix(case, "left"), 1, sites, state)
-            + act(field, 1, sites, state) - g[0] * state)
-    right = (-act(end_matrix(case, "right"), sites, sites, state)
-             - act(field, sites, sites, state) + g[1] * state)
+    left = (
+        -act(end_matrix(case, "left"), 1, sites, state) + act(field, 1, sites, state) - g[0] * state
+    )
+    right = (
+        -act(end_matrix(case, "right"), sites, sites, state)
+        - act(field, sites, sites, state)
+        + g[1] * state
+    )
     assert size_of(left) < case.bound
     assert size_of(right) < case.bound
     for value, z, nu in zip(g, (case.z1, case.z2), (case.nu1, case.nu2), strict=True):
         assert value == pytest.approx((1 + c) * (p - q) * z / nu, abs=case.bound)
     assert g[0] == pytest.approx(
-        case.alpha1 + case.alpha2 - (case.gamma1 + c * case.gamma2) * case.z1, abs=case.bound)
+        case.alpha1 + case.alpha2 - (case.gamma1 + c * case.gamma2) * case.z1, abs=case.bound
+    )
     assert g[1] == pytest.approx(
-        -(case.delta1 + case.delta2) + (case.beta1 + c * case.beta2) * case.z2, abs=case.bound)
+        -(case.delta1 + case.delta2) + (case.beta1 + c * case.beta2) * case.z2, abs=case.bound
+    )
 
 
 def six_equations(case, d1, d2):
@@ -249,20 +311,31 @@ def test_2_102_to_2_108_on_the_manifold(equation):
 
 
 def test_2_102_to_2_107_are_the_bond_equations_off_the_manifold_too(case):
-    """Six printed left sides are rows of the bond equations; the other three rows repeat (2.106)."""
+    """Six printed left sides are rows of the bond equations; the other three repeat (2.106)."""
     other = type(case)(case.w, case.left, case.right, 0.6, 0.9, case.ratio, case.gas, case.h)
     model, c = case.gas, case.ratio
     first, second, field = model.marginal(0.6), model.marginal(0.9), shocks.divergence_field(model)
     d1, d2 = 0.37, 0.53  # any
     here = np.kron(first, second)
-    rest = other.nu1 * other.nu2 * (
-        model.bulk @ here
-        - (np.subtract.outer(field, field).ravel() - field @ first + field @ second) * here
-        - d1 * (np.kron(second, second) - here) - d2 * (np.kron(first, first) - here)
+    rest = (
+        other.nu1
+        * other.nu2
+        * (
+            model.bulk @ here
+            - (np.subtract.outer(field, field).ravel() - field @ first + field @ second) * here
+            - d1 * (np.kron(second, second) - here)
+            - d2 * (np.kron(first, first) - here)
+        )
     )
     printed = six_equations(other, d1, d2)
-    rows = {"2.102": (0, 1), "2.103": (1, 1), "2.104": (2, c), "2.105": (3, 1), "2.107": (6, c),
-            "2.106": (4, 0.6 * 0.9)}
+    rows = {
+        "2.102": (0, 1),
+        "2.103": (1, 1),
+        "2.104": (2, c),
+        "2.105": (3, 1),
+        "2.107": (6, c),
+        "2.106": (4, 0.6 * 0.9),
+    }
     for equation, (row, factor) in rows.items():
         assert factor * printed[equation] == pytest.approx(rest[row], abs=100 * case.bound)
         assert abs(rest[row]) > 1e-4
@@ -279,8 +352,14 @@ def test_2_109_to_2_116_manifold_rates_velocity_and_diffusion():
     assert p / q == pytest.approx(case.z2 / case.z1, rel=1e-13)  # (2.111)
     assert d1 == pytest.approx(q * case.nu2 / case.nu1, abs=case.bound)  # (2.112)
     assert d2 == pytest.approx(p * case.nu1 / case.nu2, abs=case.bound)  # (2.113)
-    reduced = (h["h4"] - h["h5"] + (1 + c) * (h["r1"] - h["r3"]) + c * (h["r8"] - h["r9"])
-               + h["r6"] - h["r5"])
+    reduced = (
+        h["h4"]
+        - h["h5"]
+        + (1 + c) * (h["r1"] - h["r3"])
+        + c * (h["r8"] - h["r9"])
+        + h["r6"]
+        - h["r5"]
+    )
     assert reduced == pytest.approx(0, abs=10 * case.bound)  # (2.114)
     printed_v = (q * case.nu2**2 - p * case.nu1**2) / (case.nu1 * case.nu2)
     walk = shocks.ShockWalk(9, d1, d2, d2, d1)
@@ -297,8 +376,11 @@ def test_2_109_to_2_111_are_necessary(name, equation):
     h["h4"] -= {"h3": -0.1, "h1": 0.1, "r4": (1 - c) * 0.1}[name]
     model = internal_state_gas({**h, "c": c}, WALKER.left, WALKER.right)
     assert np.abs(shocks.bond_residual(model, 1.0)).max() < 1e-13
-    failing = {x.equation for x in shocks.random_walk_conditions(model, WALKER.z1, WALKER.z2)
-               if abs(x.residual) > 1e-3}
+    failing = {
+        x.equation
+        for x in shocks.random_walk_conditions(model, WALKER.z1, WALKER.z2)
+        if abs(x.residual) > 1e-3
+    }
     assert equation in failing
     assert shocks.random_walk_residuals(model, 4, WALKER.z1, WALKER.z2)[1:-1].min() > WRONG
 
@@ -365,13 +447,15 @@ def test_end_rates_of_the_errata():
     case, (p, q), c = WALKER, WALKER.p_q, WALKER.ratio
     e0, el = shocks.end_rates(case.gas, case.z1, case.z2)
     assert e0 == pytest.approx(
-        case.nu1 * (case.gamma1 + c * case.gamma2) / (1 + c) + (p - q) / case.nu2, rel=1e-12)
+        case.nu1 * (case.gamma1 + c * case.gamma2) / (1 + c) + (p - q) / case.nu2, rel=1e-12
+    )
     assert el == pytest.approx(
-        case.nu2 * (case.beta1 + c * case.beta2) / (1 + c) - (p - q) / case.nu1, rel=1e-12)
+        case.nu2 * (case.beta1 + c * case.beta2) / (1 + c) - (p - q) / case.nu1, rel=1e-12
+    )
 
 
 def test_linear_profile_where_the_shock_has_no_bias():
-    """Text after (2.117): d1 = d2 puts the shock anywhere with equal probability, if the ends do."""
+    """Text after (2.117): d1 = d2 puts the shock anywhere equally likely, if the ends do."""
     walk = shocks.ShockWalk(6, 0.4, 0.4, 0.4, 0.4)
     assert walk.stationary_mixture() == pytest.approx(np.full(7, 1 / 7), rel=1e-14)
     other = shocks.ShockWalk(6, 0.4, 0.4, 0.8, 0.4).stationary_mixture()
@@ -379,8 +463,10 @@ def test_linear_profile_where_the_shock_has_no_bias():
 
 
 def e_and_b(case, sites, vector, k):
-    return (lambda pattern: mean(case, sites, vector, pattern, k),
-            lambda pattern: mean(case, sites, vector, pattern, k - 1))
+    return (
+        lambda pattern: mean(case, sites, vector, pattern, k),
+        lambda pattern: mean(case, sites, vector, pattern, k - 1),
+    )
 
 
 @pytest.mark.parametrize("sites", range(3, 8))
@@ -395,20 +481,40 @@ def test_2_118_2_119_equations_of_motion_with_plus_signs(case, sites):
 
         def a_rate(sign, e=e, b=b):
             return (
-                -(h1 + c * r1 + c * r2) * b("0A") + h3 * b("A0") + (h4 + sign * r6) * b("AB")
-                - (h5 + c * r9) * b("BA") + r3 * b("0B") + r4 * b("B0")
-                - c * (r5 + c * r7) * b("AA") + (r7 + r8) * b("BB") + h1 * e("0A")
-                - (h3 + c * r3 + c * r4) * e("A0") - (h4 + c * r8) * e("AB")
-                + (h5 + r5) * e("BA") + r1 * e("B0") + sign * r2 * e("0B")
-                - c * (r6 + c * r7) * e("AA") + (r7 + r9) * e("BB")
+                -(h1 + c * r1 + c * r2) * b("0A")
+                + h3 * b("A0")
+                + (h4 + sign * r6) * b("AB")
+                - (h5 + c * r9) * b("BA")
+                + r3 * b("0B")
+                + r4 * b("B0")
+                - c * (r5 + c * r7) * b("AA")
+                + (r7 + r8) * b("BB")
+                + h1 * e("0A")
+                - (h3 + c * r3 + c * r4) * e("A0")
+                - (h4 + c * r8) * e("AB")
+                + (h5 + r5) * e("BA")
+                + r1 * e("B0")
+                + sign * r2 * e("0B")
+                - c * (r6 + c * r7) * e("AA")
+                + (r7 + r9) * e("BB")
             )
 
         b_rate = (
-            -(h2 + r2 + r3) * b("0B") + h6 * b("B0") - (h4 + r6) * b("AB")
-            + (h5 + c * r9) * b("BA") + c * r1 * b("0A") + c * r4 * b("A0")
-            + c * (r5 + c * r7) * b("AA") - (r7 + r8) * b("BB") + h2 * e("0B")
-            - (h6 + r1 + r4) * e("B0") + (h4 + c * r8) * e("AB") - (h5 + r5) * e("BA")
-            + c * r2 * e("0A") + c * r3 * e("A0") + c * (r6 + c * r7) * e("AA")
+            -(h2 + r2 + r3) * b("0B")
+            + h6 * b("B0")
+            - (h4 + r6) * b("AB")
+            + (h5 + c * r9) * b("BA")
+            + c * r1 * b("0A")
+            + c * r4 * b("A0")
+            + c * (r5 + c * r7) * b("AA")
+            - (r7 + r8) * b("BB")
+            + h2 * e("0B")
+            - (h6 + r1 + r4) * e("B0")
+            + (h4 + c * r8) * e("AB")
+            - (h5 + r5) * e("BA")
+            + c * r2 * e("0A")
+            + c * r3 * e("A0")
+            + c * (r6 + c * r7) * e("AA")
             - (r7 + r9) * e("BB")
         )
         found = mean(case, sites, flow, "A", k)
@@ -420,14 +526,32 @@ def test_2_118_2_119_equations_of_motion_with_plus_signs(case, sites):
 def species_currents(case, e):
     """(2.123), (2.124), (2.125)."""
     h, c = case.h, case.ratio
-    a = (-(h["h1"] + c * h["r2"] / 2) * e("0A") + (h["h3"] + c * h["r4"] / 2) * e("A0")
-         + h["h4"] * e("AB") - h["h5"] * e("BA") - h["r2"] / 2 * e("0B") + h["r4"] / 2 * e("B0"))
-    b = (-(h["h2"] + h["r2"] / 2) * e("0B") + (h["h6"] + h["r4"] / 2) * e("B0")
-         - h["h4"] * e("AB") + h["h5"] * e("BA") - c * h["r2"] / 2 * e("0A")
-         + c * h["r4"] / 2 * e("A0"))
-    total = (-h["h1"] * e("0A") + h["h3"] * e("A0") - h["h2"] * e("0B") + h["h6"] * e("B0")
-             - h["r2"] * e("0B") - c * h["r2"] * e("0A") + c * h["r4"] * e("A0")
-             + h["r4"] * e("B0"))
+    a = (
+        -(h["h1"] + c * h["r2"] / 2) * e("0A")
+        + (h["h3"] + c * h["r4"] / 2) * e("A0")
+        + h["h4"] * e("AB")
+        - h["h5"] * e("BA")
+        - h["r2"] / 2 * e("0B")
+        + h["r4"] / 2 * e("B0")
+    )
+    b = (
+        -(h["h2"] + h["r2"] / 2) * e("0B")
+        + (h["h6"] + h["r4"] / 2) * e("B0")
+        - h["h4"] * e("AB")
+        + h["h5"] * e("BA")
+        - c * h["r2"] / 2 * e("0A")
+        + c * h["r4"] / 2 * e("A0")
+    )
+    total = (
+        -h["h1"] * e("0A")
+        + h["h3"] * e("A0")
+        - h["h2"] * e("0B")
+        + h["h6"] * e("B0")
+        - h["r2"] * e("0B")
+        - c * h["r2"] * e("0A")
+        + c * h["r4"] * e("A0")
+        + h["r4"] * e("B0")
+    )
     return a, b, total
 
 
@@ -437,11 +561,22 @@ def source(case, e, b, sign):
     r1, r2, r3, r4, r5, r6, r7, r8, r9 = (case.h[f"r{i}"] for i in range(1, 10))
     first = -(c * r1 + c * r2 / 2) if sign == 1 else c * r1 - c * r2 / 2
     return (
-        first * b("0A") + (r2 / 2 + r3) * b("0B") + r4 / 2 * b("B0") - c * r4 / 2 * b("A0")
-        - (c * r5 + c**2 * r7) * b("AA") + r6 * b("AB") + (r7 + r8) * b("BB") - c * r9 * b("BA")
-        + (r1 + r4 / 2) * e("B0") + r2 / 2 * e("0B") - c * r2 / 2 * e("0A")
-        - (c * r3 + c * r4 / 2) * e("A0") + r5 * e("BA") - (c * r6 + c**2 * r7) * e("AA")
-        + (r7 + r9) * e("BB") - c * r8 * e("AB")
+        first * b("0A")
+        + (r2 / 2 + r3) * b("0B")
+        + r4 / 2 * b("B0")
+        - c * r4 / 2 * b("A0")
+        - (c * r5 + c**2 * r7) * b("AA")
+        + r6 * b("AB")
+        + (r7 + r8) * b("BB")
+        - c * r9 * b("BA")
+        + (r1 + r4 / 2) * e("B0")
+        + r2 / 2 * e("0B")
+        - c * r2 / 2 * e("0A")
+        - (c * r3 + c * r4 / 2) * e("A0")
+        + r5 * e("BA")
+        - (c * r6 + c**2 * r7) * e("AA")
+        + (r7 + r9) * e("BB")
+        - c * r8 * e("AB")
     )
 
 
@@ -470,8 +605,12 @@ def test_2_126_2_127_stationary_current(case, sites):
     h, c = case.h, case.ratio
     measure = product([case.weights1] * sites)
     rho = case.gas.density(case.z1)
-    printed = ((h["h3"] - h["h1"] + c * (h["h6"] - h["h2"]) + 2 * c * (h["r4"] - h["r2"]))
-               / (1 + c) * rho * (1 - rho))
+    printed = (
+        (h["h3"] - h["h1"] + c * (h["h6"] - h["h2"]) + 2 * c * (h["r4"] - h["r2"]))
+        / (1 + c)
+        * rho
+        * (1 - rho)
+    )
     e, ep = drive(h, c)
     assert printed == pytest.approx((e + c * ep) / (1 + c) * rho * (1 - rho), abs=case.bound)
     found = generator.bond_currents(case.gas, sites, measure)

@@ -15,8 +15,10 @@ from lattice.matrix_product import asep_stationary
 from lattice.models import RateError, asep, charge_gas
 
 CASES = {
-    "charge": stationary_charge(1), "one-sided": shock_charge("one-sided"),
-    "two-sided": shock_charge("two-sided"), "internal-state": stationary_internal(2),
+    "charge": stationary_charge(1),
+    "one-sided": shock_charge("one-sided"),
+    "two-sided": shock_charge("two-sided"),
+    "internal-state": stationary_internal(2),
     "internal-state shock": shock_internal(),
 }
 
@@ -40,7 +42,7 @@ def test_alias_tables_hold_the_rates():
             rates[initial] = 0
             expected = np.where(np.arange(len(matrix)) == initial, 0, matrix[:, initial])
             assert rates == pytest.approx(expected, abs=1e-12)
-            assert chances[len(matrix):].max() < 1e-15
+            assert chances[len(matrix) :].max() < 1e-15
 
 
 @pytest.mark.parametrize("name", CASES)
@@ -105,8 +107,10 @@ def test_same_seed_same_numbers_whatever_the_threads():
     case = CASES["two-sided"]
     initial = shocks.shock_marginals(case.gas, 50, 25, case.z1, case.z2)
     evidence = monte_carlo.shock_evidence(case.gas, case.z1, case.z2)
-    runs = [monte_carlo.simulate(case.gas, initial, [1.0, 2.0], 6, seed, evidence, workers)
-            for seed, workers in ((4, 1), (4, 3), (5, 3))]
+    runs = [
+        monte_carlo.simulate(case.gas, initial, [1.0, 2.0], 6, seed, evidence, workers)
+        for seed, workers in ((4, 1), (4, 3), (5, 3))
+    ]
     assert (runs[0].occupation == runs[1].occupation).all()
     assert (runs[0].positions == runs[1].positions).all()
     assert (runs[0].occupation != runs[2].occupation).any()
@@ -155,7 +159,9 @@ def test_walk_estimate_on_walks_with_known_rates_and_noisy_positions(seed):
     found = monte_carlo.estimate_walk(times, walkers + rng.normal(0, 5, walkers.shape))
     assert abs(found.velocity - 0.4) < 4 * found.velocity_error
     assert abs(found.diffusion - 0.5) < 4 * found.diffusion_error
-    assert found.velocity_error == pytest.approx(np.sqrt(2 * 0.5 * 400 + 50) / 400 / 200**0.5, rel=0.2)
+    assert found.velocity_error == pytest.approx(
+        np.sqrt(2 * 0.5 * 400 + 50) / 400 / 200**0.5, rel=0.2
+    )
     assert found.diffusion_error < 0.05
 
 
