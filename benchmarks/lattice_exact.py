@@ -2,15 +2,17 @@
 
     python benchmarks/lattice_exact.py [LARGEST]
 
-For each length up to LARGEST (default 12) and one model of each family: bytes and seconds of the
-stored generator, seconds of one application stored and matrix-free, of the stationary state (with
-its residual |W P|_1 over the exit rate) and of the evolution to t = 1.  Wall-clock seconds.
+For each length up to LARGEST (default 12) and one model of each family, off its shock manifold so
+that the stationary state is no mixture of a few shock measures: bytes and seconds of the stored
+generator, seconds of one application stored and matrix-free, of the stationary state (with its
+residual |W P|_1 over the exit rate) and of the evolution to t = 1.  Wall-clock seconds.
 """
 
 from __future__ import annotations
 
 import sys
 import time
+from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
@@ -23,10 +25,14 @@ EXAMPLES = Path(__file__).parents[1] / "docs" / "examples" / "lattice"
 def main() -> None:
     largest = int(sys.argv[1]) if len(sys.argv) > 1 else 12
     print(
-        "model           L   states  stored/B  build/s  apply/s  free/s  stationary/s  residual  t=1/s"
+        "model           L  states  stored/B  build/s  apply/s  free/s  stationary/s residual t=1/s"
     )
     for name in ("two_sided", "internal_state"):
         model, z1, z2 = spec.read(EXAMPLES / f"{name}.toml")
+        bulk = model.bulk.copy()  # w37 grows by a half
+        bulk[2, 6] += 0.5
+        bulk[6, 6] -= 0.5
+        model = replace(model, bulk=bulk)
         for sites in range(6, largest + 1):
             clock = time.perf_counter
             start = clock()
