@@ -23,6 +23,7 @@ from lattice.shocks import (
     boundary_fugacity,
     end_rates,
     hopping_rates,
+    random_walk_conditions,
     random_walk_residuals,
     stationarity_residual,
 )
@@ -179,6 +180,9 @@ def test_completion_keeps_what_is_given_and_can_leave_PT_invariance():
     assert {name: model.rates[name] for name in given} == given
     assert model.left["alpha3"] == 0.25
     assert model.rates["w74"] != pytest.approx(0.6 * model.rates["w23"])
+    conditions = random_walk_conditions(model.gas(), 1.2, 0.5)  # with 24 free rates
+    assert [c.equation for c in conditions] == ["2.111", "2.109", "2.110"]
+    assert max(abs(c.residual) for c in conditions) < 1e-12
     assert random_walk_residuals(model.gas(), 5, 1.2, 0.5).max() < 1e-13
     assert stationarity_residual(model.gas(), 5, 1.2, 0.5) < 1e-13
 
