@@ -149,5 +149,9 @@ def _mean_positions(
         if min(times) < 0:
             raise ValueError(f"times {times}: must not be negative")
         return [walk.mean_position(start, time) for time in times]
-    states = generator.evolve(model, sites, initial, times)
-    return [shocks.equimolar_position(model, sites, state, z1, z2) for state in states]
+    moments = sorted(times)
+    states = generator.evolve(model, sites, initial, moments)
+    return [
+        shocks.equimolar_position(model, sites, states[moments.index(time)], z1, z2)
+        for time in times
+    ]
