@@ -17,6 +17,7 @@ from scipy.optimize import linprog
 
 from lattice.models import (
     BULK_NAMES,
+    FUGACITY_POWER,
     LEFT_NAMES,
     PT_RATES,
     RIGHT_NAMES,
@@ -25,8 +26,8 @@ from lattice.models import (
     LatticeGas,
     RateError,
     Vector,
-    _checked,
     charge_gas,
+    checked_rates,
     generator_matrix,
     internal_state_gas,
 )
@@ -71,7 +72,8 @@ def complete_shock(
     two-sided charge shock fixes it at X/(1+X)^2, X = z2/z1 (2.174), and c may stand in `rates`.
     If `rates` names h1.., r1.. or c the completion is PT invariant, with w.. it need not be.
 
-    Raises `NoNonnegativeRates` if no choice exists, `RateError` on bad rates or a missing ratio.
+    Raises `NoNonnegativeRates` if no choice exists, `RateError` on bad rates or a missing ratio,
+    `ArithmeticError` where a choice at the edge of existence cannot be told from none.
     """
     if not (np.isfinite([z1, z2]).all() and min(z1, z2) >= 0 and z1 != z2):
         raise RateError(f"fugacities z1 = {z1}, z2 = {z2}: must be nonnegative and different")
@@ -80,9 +82,9 @@ def complete_shock(
     pt = family == "internal-state" and not any(name[:1] == "w" for name in bulk)
     names = tuple(PT_RATES) if pt else BULK_NAMES[family]
     given = {
-        **{name: _checked(bulk, names, family)[name] for name in bulk},
-        **{name: _checked(left or {}, LEFT_NAMES, family)[name] for name in left or {}},
-        **{name: _checked(right or {}, RIGHT_NAMES, family)[name] for name in right or {}},
+        **{name: checked_rates(bulk, names, family)[name] for name in bulk},
+        **{name: checked_rates(left or {}, LEFT_NAMES, family)[name] for name in left or {}},
+        **{name: checked_rates(right or {}, RIGHT_NAMES, family)[name] for name in right or {}},
     }
     solution = _solve(_Equations(family, names, ratio, z1, z2, ends), given)
     if solution is None:
@@ -93,10 +95,8 @@ def complete_shock(
         )
     return ShockModel(
         family,
-        {
-            **{name: solution[name] for name in names},
-            **({"c": ratio} if names[0][0] != "w" or family == "internal-state" else {}),
-        },
+        {name: solution[name] for name in names}
+        | ({"c": ratio} if family == "internal-state" else {}),
         {name: solution[name] for name in LEFT_NAMES},
         {name: solution[name] for name in RIGHT_NAMES},
         z1,
@@ -138,7 +138,7 @@ class _Equations:
         self.bulk_names, self.ends, self.ratio = names, ends, ratio
         self.rate_names = (*names, *LEFT_NAMES, *RIGHT_NAMES)
         self.size = len(STATES[family])
-        powers = np.array([0, 1, 2] if family == "charge" else [0, 1, 1])
+        powers = np.array(FUGACITY_POWER[family])
         weights = [np.array([1.0, 1.0, ratio]) * z**powers for z in (z1, z2)]
         self.first, self.second = (w / w.sum() for w in weights)
         self.vacant = STATES[family].index("0")
@@ -224,6 +224,7 @@ def _solve(equations: _Equations, given: Mapping[str, float]) -> dict[str, float
     free = ~(fixed | at_zero)
     for _ in range(2):
         unknowns[free] -= np.linalg.lstsq(matrix[:, free], matrix @ unknowns, rcond=1e-12)[0]
-    if np.abs(matrix @ unknowns).max() > 1e-12 * cap or unknowns[:count].min() < 0:
-        return None
+    unknowns[:count][np.abs(unknowns[:count]) < 1e-13 * cap] = 0.0
+    if np.abs(matrix @ unknowns).max() > 1e-11 * cap or unknowns[:count].min() < 0:
+        raise ArithmeticError("rates exist, but could not be computed to rounding")
     return {name: float(value) for name, value in zip(names, unknowns, strict=False)}

@@ -15,7 +15,6 @@ from lattice.models import LatticeGas, Vector
 from lattice.monte_carlo import Ensemble
 from lattice.step import StepEvolution
 
-_STATE_COLOURS = {"A": "#c0392b", "0": "#f4f1ea", "B": "#2c5f8a"}
 _PHASE_COLOURS = ("#dce6f0", "#f3dfd3", "#dfeadb", "#efe9c8")
 
 

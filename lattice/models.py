@@ -98,7 +98,7 @@ def pair_label(number: int, family: Family) -> str:
     return states[first] + states[second]
 
 
-def _checked(
+def checked_rates(
     rates: Mapping[str, float], allowed: tuple[str, ...], family: Family
 ) -> dict[str, float]:
     """Nonnegative finite rates by name, with zero for the names left out."""
@@ -142,7 +142,7 @@ def bulk_matrix(family: Family, rates: Mapping[str, float]) -> Vector:
 
     Returns an array of shape (s^2, s^2), s the number of states of a site; raises `RateError`.
     """
-    w = _checked(rates, BULK_NAMES[family], family)
+    w = checked_rates(rates, BULK_NAMES[family], family)
     return generator_matrix(
         len(STATES[family]) ** 2,
         {(int(name[1]) - 1, int(name[2]) - 1): rate for name, rate in w.items()},
@@ -161,7 +161,7 @@ def boundary_matrix(
     names = LEFT_NAMES if side == "left" else RIGHT_NAMES
     if family == "asep":
         names = (forward + "1", backward + "1")
-    checked = _checked(rates, names, family)
+    checked = checked_rates(rates, names, family)
     moves: dict[tuple[int, int], float] = {}
     for number, (final, initial) in TRANSITIONS.items():
         if forward + number in checked:
@@ -331,7 +331,7 @@ def charge_gas(
     chain is periodic.  Raises `RateError` on unknown names, on rates that are negative, not finite
     or off the conservation law, and where (2.35) has no solution.
     """
-    w = _checked(rates, BULK_NAMES["charge"], "charge")
+    w = checked_rates(rates, BULK_NAMES["charge"], "charge")
     ratio = charge_ratio(w)
     if ratio == 0:
         entering = [
@@ -350,7 +350,7 @@ def charge_gas(
 
 def pt_rates(rates: Mapping[str, float]) -> tuple[dict[str, float], float]:
     """The 24 rates w and c from h1..h6, r1..r9, c (2.86); raises `RateError`."""
-    given = _checked(rates, (*PT_RATES, "c"), "internal-state")
+    given = checked_rates(rates, (*PT_RATES, "c"), "internal-state")
     if "c" not in rates:
         raise RateError("c, the ratio of B to A (2.81), is missing")
     c = given["c"]
@@ -398,7 +398,7 @@ def internal_state_gas(
         w, c = pt_rates(rates)
     else:
         allowed = (*BULK_NAMES["internal-state"], "c")
-        w = _checked(rates, allowed, "internal-state")
+        w = checked_rates(rates, allowed, "internal-state")
         c = w.pop("c")
         if "c" not in rates:
             c = internal_ratio(w)
