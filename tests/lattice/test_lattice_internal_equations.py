@@ -458,6 +458,9 @@ def test_linear_profile_where_the_shock_has_no_bias():
     """Text after (2.117): d1 = d2 puts the shock anywhere equally likely, if the ends do."""
     walk = shocks.ShockWalk(6, 0.4, 0.4, 0.4, 0.4)
     assert walk.stationary_mixture() == pytest.approx(np.full(7, 1 / 7), rel=1e-14)
+    # the sentence before has the bias reversed: d1 > d2 leaves the shock at the left end
+    assert shocks.ShockWalk(6, 0.6, 0.3, 0.3, 0.6).stationary_mixture().argmax() == 0
+    assert shocks.ShockWalk(6, 0.3, 0.6, 0.6, 0.3).stationary_mixture().argmax() == 6
     other = shocks.ShockWalk(6, 0.4, 0.4, 0.8, 0.4).stationary_mixture()
     assert other[0] == pytest.approx(other[1] / 2, rel=1e-14)  # (2.117) needs the end rates
 
