@@ -3,6 +3,7 @@
 import typer
 
 from narrows.analyze_cli import analyze
+from narrows.lattice_cli import app as lattice_app
 from narrows.run_cli import deck, run
 
 app = typer.Typer(
@@ -13,3 +14,4 @@ app = typer.Typer(
 )
 for command in (deck, run, analyze):
     app.command()(command)
+app.add_typer(lattice_app, name="lattice")
