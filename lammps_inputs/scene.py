@@ -17,7 +17,7 @@ Positive = Annotated[float, Field(gt=0)]
 NonNegative = Annotated[float, Field(ge=0)]
 
 Hydrodynamics = Literal["on", "shuffle", "bath"]
-Thermostat = Literal["none", "layer", "monte_carlo", "rescale", "andersen"]
+Thermostat = Literal["none", "layer", "monte_carlo", "maxwell_boltzmann", "rescale", "andersen"]
 Rotation = Literal["random_axis", "coordinate_axes"]
 
 

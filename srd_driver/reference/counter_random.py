@@ -26,7 +26,7 @@ class Stream(enum.IntEnum):
     SHIFT = 1  # item 0: one uniform per axis
     ROTATION = 2  # item = cell: what turns its velocities
     WALL = 3  # item = cell: normals of the virtual particles
-    THERMOSTAT = 4  # item = cell (Monte Carlo) or particle (Andersen)
+    THERMOSTAT = 4  # item = cell (Monte Carlo, Maxwell-Boltzmann) or particle (Andersen)
     SHUFFLE = 5  # items 0, 1: keys of the eight rounds of the permutation
     BATH = 6  # item = particle: normals of its new velocity
 

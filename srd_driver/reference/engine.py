@@ -232,6 +232,8 @@ class ReferenceEngine:
             thermostats.layer(velocities, cells)
         elif scene.thermostat == "monte_carlo":
             thermostats.monte_carlo(velocities, cells, random)
+        elif scene.thermostat == "maxwell_boltzmann":
+            thermostats.maxwell_boltzmann(velocities, cells, random)
         elif scene.thermostat == "rescale":
             thermostats.rescale(velocities)
         elif scene.thermostat == "andersen":

@@ -58,6 +58,31 @@ def acceptance(scale: Array, energy: Array, freedom: Array) -> Array:
     return np.exp(freedom * np.log(scale) - (scale**2 - 1) * energy)
 
 
+def maxwell_boltzmann(velocities: Array, cells: Cells, random: CounterRandom) -> None:
+    """Scale the relative velocities of each cell to an energy from its canonical distribution.
+
+    Maxwell-Boltzmann scaling: C.-C. Huang et al., J. Comput. Phys. 229, 168 (2010). The relative
+    kinetic energy of f = d (n - 1) degrees of freedom has a density E^(f/2 - 1) exp(-E / kBT): a
+    sum of floor(f / 2) exponentials -ln(1 - u) and, for odd f, half a normal squared. The uniforms
+    are the cell's first in blocks 0, 1, ...; the normal is the first of the next block.
+    """
+    centre = cells.of_particles(cells.mean_velocity(velocities))
+    relative = velocities - centre
+    energy = cells.sum((relative**2).sum(axis=0)) / 2
+    freedom = len(velocities) * np.maximum(cells.occupation.astype(np.intp) - 1, 0)
+    blocks = -(-(freedom // 2) // 4)
+    drawn = np.zeros(cells.count)
+    for block in range(int(blocks.max()) + 1):
+        u = random.uniform(Stream.THERMOSTAT, cells.count, block)
+        used = 4 * block + np.arange(4)[:, None] < freedom // 2
+        drawn -= np.log1p(-u, where=used, out=np.zeros_like(u)).sum(axis=0)
+        odd = (freedom % 2 == 1) & (blocks == block)
+        drawn += np.where(odd, 0.5 * box_muller(u)[0] ** 2, 0.0)
+    scaled = (freedom > 0) & (energy > 0)
+    scale = np.sqrt(np.where(scaled, drawn, 1.0) / np.where(scaled, energy, 1.0))
+    velocities[:] = centre + relative * cells.of_particles(scale)
+
+
 def rescale(velocities: Array) -> None:
     """Rescale all velocities to a kinetic energy of d N / 2 (3.39, 3.40)."""
     energy = 0.5 * np.sum(velocities**2)

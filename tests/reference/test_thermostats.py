@@ -86,6 +86,41 @@ def test_monte_carlo_draws_the_documented_words() -> None:
     np.testing.assert_allclose(velocities, expected, rtol=1e-12)
 
 
+def test_maxwell_boltzmann_draws_the_documented_words() -> None:
+    # each cell on its own, in plain Python: 3D with 1 to 4 particles has f = 0, 3, 6, 9
+    state, random = np.random.default_rng(2), CounterRandom(1, 4)
+    occupation = [1, 2, 3, 4, 2]
+    numbers = np.repeat(np.arange(5), occupation)
+    velocities = state.normal(size=(3, 12))
+    expected = velocities.copy()
+    thermostats.maxwell_boltzmann(velocities, Cells((5, 1, 1), numbers), random)
+    uniforms = [random.uniform(Stream.THERMOSTAT, 5, block) for block in range(3)]
+    normals = [random.normal(Stream.THERMOSTAT, 5, block) for block in range(3)]
+    for cell, count in enumerate(occupation):
+        own = expected[:, numbers == cell]
+        mean = own.mean(axis=1, keepdims=True)
+        exponentials, odd = divmod(3 * (count - 1), 2)
+        drawn = sum(-np.log(1 - uniforms[k // 4][k % 4, cell]) for k in range(exponentials))
+        if odd:
+            drawn += normals[(exponentials + 3) // 4][0, cell] ** 2 / 2
+        if count > 1:
+            own = mean + (own - mean) * np.sqrt(2 * drawn / ((own - mean) ** 2).sum())
+        expected[:, numbers == cell] = own
+    np.testing.assert_allclose(velocities, expected, rtol=1e-12)
+
+
+@pytest.mark.parametrize(("dimension", "particles"), [(2, 2), (2, 12), (3, 2), (3, 5)])
+def test_maxwell_boltzmann_makes_the_canonical_distribution(dimension: int, particles: int) -> None:
+    # from any energy at once; Kolmogorov-Smirnov at 1e-6 as below
+    cells = Cells((10_000, 1), np.repeat(np.arange(10_000), particles))
+    velocities = 7 * np.random.default_rng(4).normal(size=(dimension, 10_000 * particles))
+    mean = cells.mean_velocity(velocities)
+    thermostats.maxwell_boltzmann(velocities, cells, CounterRandom(1, 0))
+    np.testing.assert_allclose(cells.mean_velocity(velocities), mean, atol=1e-13)
+    energies = cells.sum(((velocities - cells.of_particles(mean)) ** 2).sum(axis=0))
+    assert kstest(energies, chi2(dimension * (particles - 1)).cdf).pvalue > 1e-6
+
+
 def test_acceptance_is_the_boltzmann_ratio() -> None:
     # the ratio of weights exp(-E) under v -> zeta v with its Jacobian zeta^f, and its inverse
     scale, energy, freedom = np.array([1.07]), np.array([6.3]), np.array([18.0])
@@ -126,7 +161,9 @@ def test_printed_exponent_heats_a_2d_fluid(monkeypatch: pytest.MonkeyPatch) -> N
     assert temperature == pytest.approx(1.5, abs=0.03)
 
 
-@pytest.mark.parametrize("thermostat", ["layer", "monte_carlo", "rescale", "andersen"])
+@pytest.mark.parametrize(
+    "thermostat", ["layer", "monte_carlo", "maxwell_boltzmann", "rescale", "andersen"]
+)
 def test_temperature_returns_to_one(thermostat: Thermostat) -> None:
     scene = Bulk.make(
         length=16, width=16, density=5, thermostat=thermostat, collision_time=0.5, seed=2
