@@ -1,0 +1,640 @@
+#include "fix_mpc.h"
+
+#include "core/force_coupling.h"
+
+#include "atom.h"
+#include "comm.h"
+#include "domain.h"
+#include "error.h"
+#include "force.h"
+#include "group.h"
+#include "neighbor.h"
+#include "update.h"
+
+#include <climits>
+#include <cmath>
+#include <cstring>
+
+using namespace LAMMPS_NS;
+using namespace FixConst;
+using mpc::Colloid;
+using mpc::Particle;
+using mpc::Vector;
+
+namespace {
+
+constexpr std::uint64_t MOST_TRIALS = 100000;    // to place a particle outside the colloids
+constexpr double SPEED_MARGIN = 3;    // thermal speeds a colloid may gain between two collisions
+constexpr char MAGIC[8] = {'m', 'p', 'c', 'f', 'l', 'u', 'i', 'd'};
+
+// What precedes the particles in a fluid file and in a restart.
+struct Header {
+  char magic[8];
+  std::int64_t dimension, particles, collisions;
+};
+
+}    // namespace
+
+template <int D>
+FixMPC<D>::FixMPC(LAMMPS *lmp, int narg, char **arg) : Fix(lmp, narg, arg), processes_(*comm, world)
+{
+  if (narg < 8) utils::missing_cmd_args(FLERR, "fix mpc", error);
+  if (std::string(update->unit_style) != "lj")
+    error->all(FLERR, "fix mpc: units {}: must be lj", update->unit_style);
+  if (domain->triclinic) error->all(FLERR, "fix mpc: the box must not be triclinic");
+  if (!domain->xperiodic || (D == 3 && !domain->zperiodic))
+    error->all(FLERR, "fix mpc: boundary: must be p in x and z; y may be f, for walls");
+  if (!domain->yperiodic && (domain->boundary[1][0] != 1 || domain->boundary[1][1] != 1))
+    error->all(FLERR, "fix mpc: boundary: y must be p or f");
+  parse(narg, arg);
+
+  restart_global = 1;
+  nevery = every_;
+  scalar_flag = vector_flag = array_flag = 1;
+  global_freq = every_;
+  size_vector = 5;
+  size_array_rows = bins_;
+  size_array_cols = 5;
+  extscalar = extvector = extarray = 0;
+  dynamic_group_allow = 0;
+}
+
+template <int D> FixMPC<D>::~FixMPC()
+{
+  if (profile_file_) std::fclose(profile_file_);
+}
+
+template <int D> void FixMPC<D>::parse(int narg, char **arg)
+{
+  const auto number = [&](int i, const char *name, bool valid_sign(double), const char *must) {
+    const double value = utils::numeric(FLERR, arg[i], false, lmp);
+    if (!valid_sign(value) || !std::isfinite(value))
+      error->all(FLERR, "fix mpc: {} {}: must be {}", name, arg[i], must);
+    return value;
+  };
+  const auto positive = [](double value) { return value > 0; };
+  const auto not_negative = [](double value) { return value >= 0; };
+  const auto finite = [](double) { return true; };
+  const auto choice = [&](int i, const char *name, const std::vector<std::string> &choices) {
+    for (const auto &each : choices)
+      if (each == arg[i]) return each;
+    std::string list;
+    for (const auto &each : choices) list += (list.empty() ? "" : ", ") + each;
+    error->all(FLERR, "fix mpc: {} {}: must be one of {}", name, arg[i], list);
+  };
+
+  every_ = utils::inumeric(FLERR, arg[3], false, lmp);
+  if (every_ < 1) error->all(FLERR, "fix mpc: N {}: must be positive", arg[3]);
+  colloid_bit_ = 0;
+  if (std::string(arg[4]) != "NULL")
+    colloid_bit_ = group->get_bitmask_by_id(FLERR, arg[4], "fix mpc");
+  temperature_ = number(5, "temperature", positive, "positive");
+  edge_ = number(6, "hgrid", positive, "positive");
+  const auto seed = utils::bnumeric(FLERR, arg[7], false, lmp);
+  if (seed < 1) error->all(FLERR, "fix mpc: seed {}: must be positive", arg[7]);
+  seed_ = static_cast<std::uint64_t>(seed);
+  for (int a = 0; a < D; ++a) {
+    const double rows = domain->prd[a] / edge_;
+    if (domain->periodicity[a] && std::abs(rows - std::round(rows)) > 1e-9 * rows)
+      error->all(FLERR, "fix mpc: hgrid {}: the periodic length {} of {} is not a multiple of it",
+                 edge_, domain->prd[a], "xyz"[a]);
+    if (rows < 2 - 1e-9)
+      error->all(FLERR, "fix mpc: hgrid {}: less than 2 cells along {}", edge_, "xyz"[a]);
+  }
+
+  int i = 8;
+  const auto values = [&](int count) {
+    if (i + count >= narg)
+      error->all(FLERR, "fix mpc: {}: needs {} value(s)", arg[i], count);
+    i += count + 1;
+    return i - count;
+  };
+  while (i < narg) {
+    const std::string keyword = arg[i];
+    if (keyword == "create") {
+      particles_ = number(values(1), "create", positive, "positive");
+    } else if (keyword == "load") {
+      load_file_ = arg[values(1)];
+    } else if (keyword == "density") {
+      density_ = number(values(1), "density", positive, "positive");
+    } else if (keyword == "angle") {
+      angle_ = number(values(1), "angle", positive, "positive");
+    } else if (keyword == "axis") {
+      axes_ = choice(values(1), "axis", {"random", "coordinate"}) == "random"
+          ? mpc::Axes::Random
+          : mpc::Axes::Coordinate;
+    } else if (keyword == "shift") {
+      shifted_ = choice(values(1), "shift", {"yes", "no"}) == "yes";
+    } else if (keyword == "tstat") {
+      tstat_ = choice(values(1), "tstat", {"none", "layer", "monte_carlo", "rescale", "andersen"});
+    } else if (keyword == "hydro") {
+      hydro_ = choice(values(1), "hydro", {"on", "shuffle", "bath"});
+    } else if (keyword == "field") {
+      const int first = values(3);
+      for (int a = 0; a < D; ++a) field_[a] = number(first + a, "field", finite, "finite");
+    } else if (keyword == "force") {
+      const int first = values(3);
+      const int type = utils::inumeric(FLERR, arg[first], false, lmp);
+      if (type < 1 || type > atom->ntypes)
+        error->all(FLERR, "fix mpc: force {}: no such atom type", arg[first]);
+      interactions_[type] = {number(first + 1, "force epsilon", not_negative, "not negative"),
+                             number(first + 2, "force sigma", positive, "positive")};
+    } else if (keyword == "bins") {
+      bins_ = utils::inumeric(FLERR, arg[values(1)], false, lmp);
+      if (bins_ < 1) error->all(FLERR, "fix mpc: bins {}: must be positive", arg[i - 1]);
+    } else if (keyword == "profile") {
+      const int first = values(4);
+      profile_every_ = utils::inumeric(FLERR, arg[first], false, lmp);
+      profile_frequency_ = utils::inumeric(FLERR, arg[first + 1], false, lmp);
+      if (profile_every_ < 1 || profile_every_ % every_)
+        error->all(FLERR, "fix mpc: profile Nevery {}: must be a multiple of N", arg[first]);
+      if (profile_frequency_ < 1 || profile_frequency_ % profile_every_)
+        error->all(FLERR, "fix mpc: profile Nfreq {}: must be a multiple of Nevery",
+                   arg[first + 1]);
+      const bool append =
+          choice(first + 2, "profile mode", {"file", "append"}) == "append";
+      if (comm->me == 0) {
+        profile_file_ = std::fopen(arg[first + 3], append ? "a" : "w");
+        if (!profile_file_)
+          error->one(FLERR, "fix mpc: profile: cannot write {}", arg[first + 3]);
+        if (!append)
+          std::fprintf(profile_file_,
+                       "# Chunk-averaged data for fix %s and group fluid\n"
+                       "# Timestep Number-of-chunks Total-count\n"
+                       "# Chunk Coord1 Ncount density/number vx temp\n",
+                       id);
+      }
+    } else {
+      error->all(FLERR, "fix mpc: unknown keyword {}", keyword);
+    }
+  }
+
+  if (bins_ == 0) bins_ = std::max(1, static_cast<int>(std::lround(2 * domain->prd[1] / edge_)));
+  if ((particles_ > 0) == !load_file_.empty())
+    error->all(FLERR, "fix mpc: one of create and load must be given");
+  if (particles_ != std::round(particles_) || particles_ > UINT32_MAX)
+    error->all(FLERR, "fix mpc: create {}: must be a whole number below 2^32", particles_);
+  if (!domain->yperiodic && density_ == 0)
+    error->all(FLERR, "fix mpc: density: needed for the virtual particles of the walls");
+  if (D == 3 && axes_ == mpc::Axes::Coordinate && angle_ != 90)
+    error->all(FLERR, "fix mpc: angle {}: about coordinate axes it must be 90; else use axis random",
+               angle_);
+  if (angle_ > 180) error->all(FLERR, "fix mpc: angle {}: must be at most 180", angle_);
+  if (!interactions_.empty() && !colloid_bit_)
+    error->all(FLERR, "fix mpc: force: there is no colloid group");
+}
+
+template <int D> int FixMPC<D>::setmask()
+{
+  return INITIAL_INTEGRATE | PRE_REVERSE | FINAL_INTEGRATE | END_OF_STEP;
+}
+
+template <int D> void FixMPC<D>::init()
+{
+  if (comm->style != Comm::BRICK || comm->layout == Comm::LAYOUT_TILED)
+    error->all(FLERR, "fix mpc: comm_style tiled is not supported");
+  if (!interactions_.empty() && !force->newton_pair)
+    error->all(FLERR, "fix mpc: newton: must be on, forces on ghost colloids are to be summed");
+  if (domain->box_change_size || domain->box_change_shape)
+    error->all(FLERR, "fix mpc: the box must not change");
+  if (!solver_) {
+    make_solver();
+    if (load_file_.empty())
+      create_fluid();
+    else
+      load_fluid();
+  }
+  if (update->dt * every_ != interval_)
+    error->all(FLERR, "fix mpc: timestep: must not change");
+  if (!open_ && update->ntimestep % every_)
+    error->all(FLERR, "fix mpc: N {}: the first step {} must be a multiple of it", every_,
+               update->ntimestep);
+}
+
+template <int D> void FixMPC<D>::make_solver()
+{
+  Vector<D> box;
+  std::array<bool, D> periodic;
+  for (int a = 0; a < D; ++a) {
+    box[a] = domain->prd[a];
+    periodic[a] = domain->periodicity[a];
+  }
+  const mpc::Grid<D> grid(box, periodic, edge_);
+  interval_ = update->dt * every_;
+
+  const double width = domain->yperiodic ? mpc::NO_WALLS : domain->yprd;
+  const mpc::Rotation rotation(angle_ * M_PI / 180, axes_);
+  mpc::Method<D> method{seed_, interval_, temperature_, density_, field_,
+                        width, rotation,  shifted_,     {},       {},     {}};
+  if (tstat_ == "layer")
+    method.thermostat = std::make_unique<mpc::LayerThermostat<D>>(temperature_);
+  else if (tstat_ == "monte_carlo")
+    method.thermostat = std::make_unique<mpc::MonteCarloThermostat<D>>(temperature_);
+  else if (tstat_ == "rescale")
+    method.thermostat = std::make_unique<mpc::RescalingThermostat<D>>(temperature_);
+  else if (tstat_ == "andersen")
+    method.thermostat = std::make_unique<mpc::AndersenThermostat<D>>(temperature_, interval_);
+  if (hydro_ == "shuffle")
+    method.random_solvent = std::make_unique<mpc::ShuffledSolvent<D>>();
+  else if (hydro_ == "bath")
+    method.random_solvent = std::make_unique<mpc::BathSolvent<D>>(temperature_);
+  if (!interactions_.empty())
+    method.coupling =
+        std::make_unique<mpc::ForceCoupling<D>>(interval_, temperature_, field_, width);
+  solver_ = std::make_unique<mpc::Solver<D>>(grid, std::move(method), processes_);
+}
+
+// The first of this process's cells, from a corner of its sub-domain.
+template <int D> std::array<int, D> FixMPC<D>::bound(const double *corner) const
+{
+  std::array<int, D> cells;
+  for (int a = 0; a < D; ++a)
+    cells[a] = static_cast<int>(std::floor((corner[a] - domain->boxlo[a]) / edge_ + 0.5));
+  return cells;
+}
+
+template <int D> std::array<int, D> FixMPC<D>::lower() const
+{
+  return bound(domain->sublo);
+}
+
+// Beyond the last sub-domain is the row of cells that only walls have.
+template <int D> std::array<int, D> FixMPC<D>::upper() const
+{
+  auto cells = bound(domain->subhi);
+  for (int a = 0; a < D; ++a)
+    if (comm->myloc[a] == comm->procgrid[a] - 1) cells[a] = solver_->grid().shape[a];
+  return cells;
+}
+
+// Uniform outside the colloids, Maxwell velocities, no momentum; a function of the seed and the
+// particle's number alone, so every process draws all and keeps its own.
+template <int D> void FixMPC<D>::create_fluid()
+{
+  solver_->reset(0, lower(), upper());
+  std::vector<double> mine, all;
+  for (int i = 0; i < atom->nlocal; ++i) {
+    const auto interaction = interactions_.find(atom->type[i]);
+    if (!(atom->mask[i] & colloid_bit_) || interaction == interactions_.end()) continue;
+    for (int a = 0; a < D; ++a) mine.push_back(atom->x[i][a] - domain->boxlo[a]);
+    mine.push_back(interaction->second.sigma);
+  }
+  const int size = static_cast<int>(mine.size());
+  std::vector<int> sizes(comm->nprocs), starts(comm->nprocs);
+  MPI_Allgather(&size, 1, MPI_INT, sizes.data(), 1, MPI_INT, world);
+  for (int p = 1; p < comm->nprocs; ++p) starts[p] = starts[p - 1] + sizes[p - 1];
+  all.resize(starts.back() + sizes.back());
+  MPI_Allgatherv(mine.data(), size, MPI_DOUBLE, all.data(), sizes.data(), starts.data(), MPI_DOUBLE,
+                 world);
+
+  const auto overlaps = [&](const Vector<D> &x) {
+    for (std::size_t c = 0; c < all.size(); c += D + 1) {
+      Vector<D> separation;
+      for (int a = 0; a < D; ++a) {
+        separation[a] = x[a] - all[c + a];
+        if (domain->periodicity[a])
+          separation[a] -= domain->prd[a] * std::round(separation[a] / domain->prd[a]);
+      }
+      if (mpc::square<D>(separation) < all[c + D] * all[c + D]) return true;
+    }
+    return false;
+  };
+  const mpc::CounterRandom random{seed_, 0};
+  for (double number = 0; number < particles_; ++number) {
+    const auto item = static_cast<std::uint64_t>(number);
+    Particle<D> particle{number, {}, {}};
+    std::uint64_t trial = 0;
+    do {
+      if (++trial > MOST_TRIALS)
+        error->all(FLERR, "fix mpc: create {}: the colloids leave no room", particles_);
+      const auto u = mpc::uniforms(random.words(mpc::Stream::Create, item, trial));
+      for (int a = 0; a < D; ++a) particle.x[a] = u[a] * domain->prd[a];
+    } while (overlaps(particle.x));
+    const auto z = mpc::normals(random.words(mpc::Stream::Create, item));
+    for (int a = 0; a < D; ++a) particle.v[a] = std::sqrt(temperature_) * z[a];
+    solver_->add(particle);
+  }
+  solver_->count();
+  solver_->zero_momentum();
+}
+
+template <int D> void FixMPC<D>::load_fluid()
+{
+  FILE *file = std::fopen(load_file_.c_str(), "rb");
+  if (!file) error->one(FLERR, "fix mpc: load: cannot read {}", load_file_);
+  Header header;
+  if (std::fread(&header, sizeof header, 1, file) != 1 ||
+      std::memcmp(header.magic, MAGIC, sizeof MAGIC) || header.dimension != D)
+    error->one(FLERR, "fix mpc: load: {} is not a fluid in {} dimensions", load_file_, D);
+  solver_->reset(header.collisions, lower(), upper());
+  Particle<D> particle;
+  for (std::int64_t n = 0; n < header.particles; ++n) {
+    if (std::fread(&particle, sizeof particle, 1, file) != 1)
+      error->one(FLERR, "fix mpc: load: {} ends before its {} particles", load_file_,
+                 header.particles);
+    for (int a = 0; a < D; ++a) particle.x[a] -= domain->boxlo[a];
+    solver_->add(particle);
+  }
+  std::fclose(file);
+  solver_->count();
+  if (solver_->particles() != static_cast<double>(header.particles))
+    error->all(FLERR, "fix mpc: load: {} has particles outside the box", load_file_);
+}
+
+// Visit the particles of all processes on the first, process by process.
+template <int D> template <class Visit> void FixMPC<D>::gather(const Visit &visit)
+{
+  solver_->turn();
+  constexpr int CHUNK = 1 << 16;
+  constexpr int record = sizeof(Particle<D>) / sizeof(double);
+  std::vector<Particle<D>> chunk;
+  for (int p = 0; p < comm->nprocs; ++p) {
+    if (comm->me != 0 && comm->me != p) continue;
+    int left = solver_->fluid().size();
+    if (p > 0 && comm->me == p) MPI_Send(&left, 1, MPI_INT, 0, 0, world);
+    if (p > 0 && comm->me == 0) MPI_Recv(&left, 1, MPI_INT, p, 0, world, MPI_STATUS_IGNORE);
+    for (int done = 0; left > 0;) {
+      chunk.resize(std::min(left, CHUNK));
+      const int count = static_cast<int>(chunk.size());
+      if (comm->me == p)
+        for (int i = 0; i < count; ++i) chunk[i] = solver_->fluid().particle(done + i);
+      if (p > 0 && comm->me == p) MPI_Send(chunk.data(), count * record, MPI_DOUBLE, 0, 0, world);
+      if (p > 0 && comm->me == 0)
+        MPI_Recv(chunk.data(), count * record, MPI_DOUBLE, p, 0, world, MPI_STATUS_IGNORE);
+      if (comm->me == 0) visit(chunk);
+      done += count;
+      left -= count;
+    }
+  }
+}
+
+template <int D> void FixMPC<D>::save_fluid(const std::string &name)
+{
+  FILE *file = nullptr;
+  Header header{{}, D, static_cast<std::int64_t>(solver_->particles()),
+                static_cast<std::int64_t>(solver_->collisions())};
+  std::memcpy(header.magic, MAGIC, sizeof MAGIC);
+  bool written = true;
+  if (comm->me == 0) {
+    file = std::fopen(name.c_str(), "wb");
+    if (!file) error->one(FLERR, "fix mpc: save: cannot write {}", name);
+    written = std::fwrite(&header, sizeof header, 1, file) == 1;
+  }
+  gather([&](std::vector<Particle<D>> &particles) {
+    for (auto &particle : particles)
+      for (int a = 0; a < D; ++a) particle.x[a] += domain->boxlo[a];
+    written &= std::fwrite(particles.data(), sizeof particles[0], particles.size(), file) ==
+        particles.size();
+  });
+  if (comm->me == 0 && (std::fclose(file) || !written))
+    error->one(FLERR, "fix mpc: save: cannot write {}", name);
+}
+
+template <int D> int FixMPC<D>::modify_param(int narg, char **arg)
+{
+  if (std::string(arg[0]) != "save") return 0;
+  if (narg < 2) error->all(FLERR, "fix_modify save: needs a file name");
+  if (!solver_ || open_)
+    error->all(FLERR, "fix_modify save: the step must be a multiple of N = {}", every_);
+  save_fluid(arg[1]);
+  return 2;
+}
+
+// The whole fluid, in the order each process has it: that order decides how sums are rounded.
+template <int D> void FixMPC<D>::write_restart(FILE *file)
+{
+  if (!solver_ || open_)
+    error->all(FLERR, "fix mpc: restart: the step {} must be a multiple of N = {}",
+               update->ntimestep, every_);
+  const double bytes = sizeof(Header) + solver_->particles() * sizeof(Particle<D>);
+  if (bytes > INT_MAX)
+    error->all(FLERR, "fix mpc: restart: {} particles are too many for a LAMMPS restart file; "
+               "use fix_modify save and load", solver_->particles());
+  if (comm->me == 0) {
+    Header header{{}, D, static_cast<std::int64_t>(solver_->particles()),
+                  static_cast<std::int64_t>(solver_->collisions())};
+    std::memcpy(header.magic, MAGIC, sizeof MAGIC);
+    const int size = static_cast<int>(bytes);
+    std::fwrite(&size, sizeof size, 1, file);
+    std::fwrite(&header, sizeof header, 1, file);
+  }
+  gather([&](const std::vector<Particle<D>> &particles) {
+    std::fwrite(particles.data(), sizeof particles[0], particles.size(), file);
+  });
+}
+
+template <int D> void FixMPC<D>::restart(char *buffer)
+{
+  Header header;
+  std::memcpy(&header, buffer, sizeof header);
+  make_solver();
+  solver_->reset(header.collisions, lower(), upper());
+  Particle<D> particle;
+  for (std::int64_t n = 0; n < header.particles; ++n) {
+    std::memcpy(&particle, buffer + sizeof header + n * sizeof particle, sizeof particle);
+    solver_->add(particle);
+  }
+  solver_->count();
+}
+
+// The colloids and images that this process sees, as they stand after a collision.
+template <int D> void FixMPC<D>::snapshot()
+{
+  slots_.clear();
+  atoms_.clear();
+  double bounds[2] = {0, 0};    // speed squared, and inverse mass
+  double sigma = 0;
+  for (int i = 0; i < atom->nlocal + atom->nghost; ++i) {
+    const auto interaction = interactions_.find(atom->type[i]);
+    if (!(atom->mask[i] & colloid_bit_) || interaction == interactions_.end()) continue;
+    slots_.push_back({static_cast<double>(atom->tag[i]), {}, interaction->second.epsilon,
+                      interaction->second.sigma});
+    atoms_.push_back(i);
+    sigma = std::max(sigma, interaction->second.sigma);
+    if (i >= atom->nlocal) continue;
+    double speed = 0;
+    for (int a = 0; a < D; ++a) speed += atom->v[i][a] * atom->v[i][a];
+    const double mass = atom->rmass ? atom->rmass[i] : atom->mass[atom->type[i]];
+    bounds[0] = std::max(bounds[0], speed);
+    bounds[1] = std::max(bounds[1], 1 / mass);
+  }
+  read_colloids();
+  forces_.resize(slots_.size());
+  if (comm->nprocs > 1) MPI_Allreduce(MPI_IN_PLACE, bounds, 2, MPI_DOUBLE, MPI_MAX, world);
+  colloid_speed_ = std::sqrt(bounds[0]) + SPEED_MARGIN * std::sqrt(temperature_ * bounds[1]);
+
+  // cells reach beyond the sub-domain by the shift and half a cell, and colloids move
+  if (slots_.empty()) return;
+  const double needed =
+      1.5 * edge_ + solver_->coupling()->reach(sigma) + 3 * interval_ * colloid_speed_;
+  for (int a = 0; a < D; ++a)
+    if (comm->cutghost[a] < needed && domain->periodicity[a])
+      error->one(FLERR, "fix mpc: the ghost cutoff {:.4g} is too short for the fluid to see all "
+                 "colloids: use comm_modify cutoff {:.4g} or more", comm->cutghost[a], needed);
+}
+
+// After atoms were exchanged: find each colloid again, the image nearest to where it was.
+template <int D> void FixMPC<D>::match_slots()
+{
+  for (std::size_t s = 0; s < slots_.size(); ++s) {
+    double least = edge_ * edge_;    // a colloid moves much less, its images are much further
+    atoms_[s] = -1;
+    for (int i = 0; i < atom->nlocal + atom->nghost; ++i) {
+      if (static_cast<double>(atom->tag[i]) != slots_[s].id) continue;
+      double distance = 0;
+      for (int a = 0; a < D; ++a) {
+        const double moved = atom->x[i][a] - domain->boxlo[a] - slots_[s].x[a];
+        distance += moved * moved;
+      }
+      if (distance < least) {
+        least = distance;
+        atoms_[s] = i;
+      }
+    }
+  }
+}
+
+// An image that is no longer among the ghosts is out of reach: it stays where it was seen last.
+template <int D> void FixMPC<D>::read_colloids()
+{
+  for (std::size_t s = 0; s < slots_.size(); ++s)
+    if (atoms_[s] >= 0)
+      for (int a = 0; a < D; ++a) slots_[s].x[a] = atom->x[atoms_[s]][a] - domain->boxlo[a];
+}
+
+template <int D> void FixMPC<D>::add_forces()
+{
+  if (interactions_.empty() || !open_) return;
+  if (neighbor->ago == 0) match_slots();
+  read_colloids();
+  guarded([&] { solver_->coupling()->forces(slots_, forces_); });
+  for (std::size_t s = 0; s < slots_.size(); ++s)
+    if (atoms_[s] >= 0)
+      for (int a = 0; a < D; ++a) atom->f[atoms_[s]][a] += forces_[s][a];
+}
+
+// Stop at a fault, with the step.
+template <int D> template <class Action> void FixMPC<D>::guarded(const Action &action)
+{
+  try {
+    action();
+  } catch (const mpc::Fault &fault) {
+    error->one(FLERR, "fix mpc: step {}: {}", update->ntimestep, fault.what());
+  }
+}
+
+template <int D> void FixMPC<D>::setup_pre_reverse(int, int)
+{
+  add_forces();
+}
+
+template <int D> void FixMPC<D>::setup(int)
+{
+  if (!open_) snapshot();
+}
+
+template <int D> void FixMPC<D>::initial_integrate(int)
+{
+  if (!open_) {
+    if (comm->nprocs > 1) solver_->redistribute(lower(), upper());
+    guarded([&] { solver_->begin_interval(slots_, colloid_speed_); });
+    open_ = true;
+  }
+  if (!interactions_.empty()) guarded([&] { solver_->coupling()->drift(update->dt); });
+}
+
+template <int D> void FixMPC<D>::pre_reverse(int, int)
+{
+  add_forces();
+}
+
+template <int D> void FixMPC<D>::final_integrate()
+{
+  if (!interactions_.empty()) solver_->coupling()->kick(update->dt);
+}
+
+template <int D> void FixMPC<D>::end_of_step()
+{
+  guarded([&] { solver_->end_interval(); });
+  open_ = false;
+  if (!interactions_.empty()) snapshot();
+  if (profile_every_ && update->ntimestep % profile_every_ == 0) write_profile();
+}
+
+// Layers of the fluid as it is now.
+template <int D> const std::vector<mpc::Layer> &FixMPC<D>::profile()
+{
+  if (layers_step_ != update->ntimestep) {
+    solver_->turn();
+    layers_ = mpc::layers<D>(solver_->fluid(), solver_->grid(), bins_, processes_);
+    layers_step_ = update->ntimestep;
+  }
+  return layers_;
+}
+
+// The file of fix ave/chunk with a chunk/atom bin/1d y: averaged over the looks of Nfreq steps.
+template <int D> void FixMPC<D>::write_profile()
+{
+  averaged_.resize(bins_);
+  const auto &now = profile();
+  for (int bin = 0; bin < bins_; ++bin) {
+    averaged_[bin].count += now[bin].count;
+    averaged_[bin].momentum_x += now[bin].momentum_x;
+    averaged_[bin].squares += now[bin].squares;
+  }
+  ++looks_;
+  if (update->ntimestep % profile_frequency_) return;
+
+  if (comm->me == 0) {
+    const double depth = domain->yprd / bins_;
+    const double volume = depth * domain->xprd * (D == 3 ? domain->zprd : 1);
+    std::fprintf(profile_file_, BIGINT_FORMAT " %d %g\n", update->ntimestep, bins_,
+                 solver_->particles());
+    for (int bin = 0; bin < bins_; ++bin) {
+      const auto &layer = averaged_[bin];
+      const double occupied = std::max(layer.count, 1.0);
+      std::fprintf(profile_file_, "  %d %g %g %g %.6g %.6g\n", bin + 1,
+                   domain->boxlo[1] + depth * (bin + 0.5), layer.count / looks_,
+                   layer.count / looks_ / volume, layer.momentum_x / occupied,
+                   layer.squares / (D * occupied));
+    }
+    std::fflush(profile_file_);
+  }
+  averaged_.clear();
+  looks_ = 0;
+}
+
+template <int D> double FixMPC<D>::compute_scalar()
+{
+  return mpc::temperature(profile(), D);
+}
+
+// Momentum along x, y, z, then particles, then collisions.
+template <int D> double FixMPC<D>::compute_vector(int index)
+{
+  if (index == 3) return solver_->particles();
+  if (index == 4) return static_cast<double>(solver_->collisions());
+  return index < D ? solver_->momentum()[index] : 0.0;
+}
+
+template <int D> double FixMPC<D>::compute_array(int row, int column)
+{
+  const auto &layer = profile()[row];
+  const double depth = domain->yprd / bins_;
+  const double occupied = std::max(layer.count, 1.0);
+  switch (column) {
+    case 0: return domain->boxlo[1] + depth * (row + 0.5);
+    case 1: return layer.count;
+    case 2: return layer.count / (depth * domain->xprd * (D == 3 ? domain->zprd : 1));
+    case 3: return layer.momentum_x / occupied;
+    default: return layer.squares / (D * occupied);
+  }
+}
+
+template <int D> double FixMPC<D>::memory_usage()
+{
+  return solver_ ? solver_->memory() : 0.0;
+}
+
+template class LAMMPS_NS::FixMPC<2>;
+template class LAMMPS_NS::FixMPC<3>;
