@@ -75,11 +75,13 @@ def sample_steps(scene: Scene) -> int:
 
 
 def fluid_looks(scene: Scene) -> int:
-    """Evenly spaced looks at the fluid that one output averages."""
+    """Evenly spaced looks at the fluid that one output averages, at least two.
+
+    With a single one LAMMPS would also output at the step a run starts from.
+    """
     sample = scene.collisions_per_sample
-    return next(
-        sample // every for every in range(MAX_COLLISIONS_PER_LOOK, 0, -1) if sample % every == 0
-    )
+    longest = min(MAX_COLLISIONS_PER_LOOK, sample // 2)
+    return next(sample // every for every in range(longest, 0, -1) if sample % every == 0)
 
 
 def total_steps(scene: Scene) -> int:
@@ -101,6 +103,7 @@ def manifest(scene: Scene, engine: Engine) -> dict[str, Any]:
         "time_step": scene.time_step,
         "steps_per_collision": scene.steps_per_collision,
         "sample_steps": sample_steps(scene),
+        "fluid_looks": fluid_looks(scene),
         "equilibration_steps": equilibration,
         "total_steps": total_steps(scene),
         "fluid_particles": scene.fluid_particles,
@@ -148,10 +151,14 @@ def _head(scene: Scene, start: Start, gravity: float | None) -> Iterator[str]:
     if gravity:
         what = "colloids" if isinstance(scene, Channel) else "fluid"
         yield f"variable gravity index {gravity!r} # acceleration of the {what} along x"
-    yield f"variable steps index {total_steps(scene) - start.step} # of time {scene.time_step:.6g}"
+    yield f"variable steps index {total_steps(scene)} # of time {scene.time_step:.6g}"
     yield f"variable sample index {sample_steps(scene)} # steps between two outputs"
     yield f"variable seed_collision index {seeds['seed_collision']}"
     yield f"variable seed_shift index {seeds['seed_shift']}"
+    told = ['"total_steps": ${steps}', '"sample_steps": ${sample}']
+    if gravity:
+        told.append('"gravity": ${gravity}')
+    yield "print '{" + ", ".join(told) + "}' file variables.json screen no # what -var made of them"
     yield ""
     yield "units lj"
     yield f"dimension {scene.dimensions}"
@@ -261,7 +268,7 @@ def _output(scene: Scene, start: Start) -> Iterator[str]:
     yield "variable mean_velocity_x equal vcm(all,x)"
     yield (
         f"fix observables all ave/time {window} v_fluid_temperature v_mean_velocity_x "
-        f"start {start.step + 1} {file} observables.dat"
+        f"{file} observables.dat"
     )
     yield "thermo $(20*v_sample)"
     yield "thermo_style custom step v_fluid_temperature v_mean_velocity_x"
@@ -269,7 +276,7 @@ def _output(scene: Scene, start: Start) -> Iterator[str]:
 
 def _run() -> Iterator[str]:
     yield ""
-    yield "run ${steps}"
+    yield "run ${steps} upto"
 
 
 def _data(scene: Scene) -> Iterable[str]:

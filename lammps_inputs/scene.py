@@ -26,7 +26,10 @@ class SceneError(ValueError):
 
     def __init__(self, problems: Iterable[str]) -> None:
         self.problems = tuple(problems)
-        super().__init__("\n".join(self.problems))
+        super().__init__(self.problems)  # so that it survives pickling between processes
+
+    def __str__(self) -> str:
+        return "\n".join(self.problems)
 
     @classmethod
     def of_field(cls, field: str, value: object, allowed: str) -> Self:
@@ -81,7 +84,7 @@ class FluidScene(BaseModel):
         try:
             scene = cls(**fields)
         except ValidationError as error:
-            raise SceneError(_problems(error)) from None
+            raise SceneError(cls._field_problems(error)) from None
         problems = list(scene.problems())
         if problems:
             raise SceneError(problems)
@@ -119,8 +122,11 @@ class FluidScene(BaseModel):
 
     @property
     def collisions_per_sample(self) -> int:
-        """Collisions between two outputs: sampling_interval rounded to whole collisions."""
-        return max(1, round(self.sampling_interval / self.collision_time))
+        """Collisions between two outputs: sampling_interval rounded to whole collisions.
+
+        At least two, so that an output averages at least two looks at the fluid.
+        """
+        return max(2, round(self.sampling_interval / self.collision_time))
 
     @property
     def collisions(self) -> int:
@@ -141,13 +147,24 @@ class FluidScene(BaseModel):
                 )
             if size < 2:
                 yield f"{names[axis]} = {size!r}: at least 2 collision cells are needed"
-        if self.sampling_interval < self.collision_time * (1 - 1e-9):
+        if self.sampling_interval < 2 * self.collision_time * (1 - 1e-9):
             yield (
-                f"sampling_interval = {self.sampling_interval!r}: must be at least the "
-                f"collision_time, {self.collision_time!r}"
+                f"sampling_interval = {self.sampling_interval!r}: must be at least two collision "
+                f"times, {2 * self.collision_time!r}"
             )
         if self.fluid_particles < 2:
             yield f"density = {self.density!r}: leaves {self.fluid_particles} fluid particles"
+
+    @classmethod
+    def _field_problems(cls, error: ValidationError) -> Iterable[str]:
+        for item in error.errors():
+            field = ".".join(str(part) for part in item["loc"]) or "scene"
+            if item["type"] == "extra_forbidden":
+                known = ", ".join(cls.model_fields)
+                yield f"{field} = {item['input']!r}: unknown field; {cls.name} has {known}"
+            else:
+                reason = item["msg"].removeprefix("Value error, ").removeprefix("Input ")
+                yield f"{field} = {item['input']!r}: {reason}"
 
     def toml(self) -> str:
         """The scene as the text of a scene file."""
@@ -167,15 +184,3 @@ def parse_assignment(text: str) -> tuple[str, Any]:
         return field.strip(), tomllib.loads(f"value = {value}")["value"]
     except tomllib.TOMLDecodeError:
         return field.strip(), value.strip()
-
-
-def _problems(error: ValidationError) -> Iterable[str]:
-    for item in error.errors():
-        field = ".".join(str(part) for part in item["loc"]) or "scene"
-        if item["type"] == "extra_forbidden":
-            yield f"{field} = {item['input']!r}: unknown field"
-        elif item["type"] == "missing":
-            yield f"{field}: missing"
-        else:
-            reason = item["msg"].removeprefix("Value error, ").removeprefix("Input ")
-            yield f"{field} = {item['input']!r}: {reason}"

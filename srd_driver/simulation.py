@@ -1,5 +1,6 @@
 """Run a scene from a script, a notebook or the command line."""
 
+import shutil
 import tempfile
 import time as clock
 from collections.abc import Callable, Iterator
@@ -83,6 +84,11 @@ class Simulation:
         return LammpsSession(
             self.scene, self.directory, self._progress, self._checkpoint_steps, self._comm
         )
+
+    @property
+    def rank(self) -> int:
+        """Number of this process under mpirun, 0 for the first or only one."""
+        return int(self._comm.rank)
 
     @property
     def step(self) -> int:
@@ -192,7 +198,9 @@ class Simulation:
         try:
             yield
         except (OSError, ArithmeticError, RuntimeError) as error:
-            reason = error.strerror if isinstance(error, OSError) else str(error)
+            reason = str(error)
+            if shutil.disk_usage(self.directory).free < 2**20:
+                reason = f"the disk is full ({reason})"
             saved = self._progress.step * self.scene.time_step
             raise RunError(
                 f"stopped after step {self.step}: {reason}; nothing written before time "

@@ -1,0 +1,45 @@
+"""What the command line says: results on stdout, complaints on stderr, each process group once."""
+
+import sys
+from collections.abc import Iterator
+from contextlib import contextmanager
+
+import typer
+
+from lammps_inputs import SceneError
+from srd_driver import RunError
+from srd_driver.parallel import communicator
+
+
+def say(text: str) -> None:
+    """Print a result, on the first process only."""
+    if _first_process():
+        print(text, flush=True)
+
+
+@contextmanager
+def user_errors() -> Iterator[None]:
+    """Turn what a user can mend into one message: exit code 2 for bad input, 1 for a stop."""
+    try:
+        yield
+    except SceneError as error:
+        _complain(str(error))
+        raise typer.Exit(2) from None
+    except (RunError, OSError) as error:
+        _complain(str(error))
+        raise typer.Exit(1) from None
+    except KeyboardInterrupt:
+        _complain("interrupted: go on from the newest checkpoint by --resume")
+        raise typer.Exit(130) from None
+
+
+def _complain(text: str) -> None:
+    if _first_process():
+        print(f"narrows: {text}", file=sys.stderr, flush=True)
+
+
+def _first_process() -> bool:
+    try:
+        return bool(communicator().rank == 0)
+    except RunError:  # without MPI there is only one
+        return True

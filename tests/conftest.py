@@ -1,0 +1,39 @@
+"""What tests of several packages share: commands of this environment, run as a user would."""
+
+import subprocess
+import sys
+from collections.abc import Callable
+from pathlib import Path
+
+import pytest
+
+COMMANDS = Path(sys.executable).parent
+ROOT = Path(__file__).parent.parent
+
+Run = Callable[..., subprocess.CompletedProcess[str]]
+
+
+@pytest.fixture
+def command() -> Run:
+    """Run a command of this environment, by default for success; output captured as text."""
+
+    def run(
+        *words: str | Path, cwd: Path | None = None, succeed: bool = True
+    ) -> subprocess.CompletedProcess[str]:
+        program, *arguments = map(str, words)
+        if program == "narrows":
+            line = [sys.executable, "-m", "narrows", *arguments]
+        elif program == "mpirun":
+            inner = [str(COMMANDS / a) if a in ("lmp", "python") else a for a in arguments]
+            line = [str(COMMANDS / program), *inner]
+        else:
+            line = [str(COMMANDS / program), *arguments]
+        environment = {"PYTHONPATH": str(ROOT), "PATH": f"{COMMANDS}:/usr/bin:/bin"}
+        done = subprocess.run(
+            line, cwd=cwd, env=environment, capture_output=True, text=True, check=False
+        )
+        if succeed and done.returncode != 0:
+            raise AssertionError(f"{line} failed: {done.stdout}\n{done.stderr}")
+        return done
+
+    return run
