@@ -11,6 +11,7 @@
 #include "neighbor.h"
 #include "update.h"
 
+#include <algorithm>
 #include <climits>
 #include <cmath>
 #include <cstring>
@@ -27,10 +28,10 @@ constexpr std::uint64_t MOST_TRIALS = 100000;    // to place a particle outside 
 constexpr double SPEED_MARGIN = 3;    // thermal speeds a colloid may gain between two collisions
 constexpr char MAGIC[8] = {'m', 'p', 'c', 'f', 'l', 'u', 'i', 'd'};
 
-// What precedes the particles in a fluid file and in a restart.
-struct Header {
-  char magic[8];
-  std::int64_t dimension, particles, collisions;
+// What follows it in a restart, before the pulls on the colloids and the particles.
+struct RestartHeader {
+  mpc::FluidHeader fluid;
+  std::int64_t processes, pulls;
 };
 
 }    // namespace
@@ -50,6 +51,7 @@ FixMPC<D>::FixMPC(LAMMPS *lmp, int narg, char **arg) : Fix(lmp, narg, arg), proc
 
   restart_global = 1;
   nevery = every_;
+  time_integrate = 1;
   scalar_flag = vector_flag = array_flag = 1;
   global_freq = every_;
   size_vector = 5;
@@ -272,30 +274,24 @@ template <int D> std::array<int, D> FixMPC<D>::upper() const
 template <int D> void FixMPC<D>::create_fluid()
 {
   solver_->reset(0, lower(), upper());
-  std::vector<double> mine, all;
+  std::vector<Colloid<D>> mine;
   for (int i = 0; i < atom->nlocal; ++i) {
     const auto interaction = interactions_.find(atom->type[i]);
     if (!(atom->mask[i] & colloid_bit_) || interaction == interactions_.end()) continue;
-    for (int a = 0; a < D; ++a) mine.push_back(atom->x[i][a] - domain->boxlo[a]);
-    mine.push_back(interaction->second.sigma);
+    mine.push_back({static_cast<double>(atom->tag[i]), {}, 0, interaction->second.sigma});
+    for (int a = 0; a < D; ++a) mine.back().x[a] = atom->x[i][a] - domain->boxlo[a];
   }
-  const int size = static_cast<int>(mine.size());
-  std::vector<int> sizes(comm->nprocs), starts(comm->nprocs);
-  MPI_Allgather(&size, 1, MPI_INT, sizes.data(), 1, MPI_INT, world);
-  for (int p = 1; p < comm->nprocs; ++p) starts[p] = starts[p - 1] + sizes[p - 1];
-  all.resize(starts.back() + sizes.back());
-  MPI_Allgatherv(mine.data(), size, MPI_DOUBLE, all.data(), sizes.data(), starts.data(), MPI_DOUBLE,
-                 world);
+  const auto colloids = everyones(mine);
 
   const auto overlaps = [&](const Vector<D> &x) {
-    for (std::size_t c = 0; c < all.size(); c += D + 1) {
+    for (const auto &colloid : colloids) {
       Vector<D> separation;
       for (int a = 0; a < D; ++a) {
-        separation[a] = x[a] - all[c + a];
+        separation[a] = x[a] - colloid.x[a];
         if (domain->periodicity[a])
           separation[a] -= domain->prd[a] * std::round(separation[a] / domain->prd[a]);
       }
-      if (mpc::square<D>(separation) < all[c + D] * all[c + D]) return true;
+      if (mpc::square<D>(separation) < colloid.sigma * colloid.sigma) return true;
     }
     return false;
   };
@@ -322,7 +318,7 @@ template <int D> void FixMPC<D>::load_fluid()
 {
   FILE *file = std::fopen(load_file_.c_str(), "rb");
   if (!file) error->one(FLERR, "fix mpc: load: cannot read {}", load_file_);
-  Header header;
+  mpc::FluidHeader header;
   if (std::fread(&header, sizeof header, 1, file) != 1 ||
       std::memcmp(header.magic, MAGIC, sizeof MAGIC) || header.dimension != D)
     error->one(FLERR, "fix mpc: load: {} is not a fluid in {} dimensions", load_file_, D);
@@ -339,6 +335,21 @@ template <int D> void FixMPC<D>::load_fluid()
   solver_->count();
   if (solver_->particles() != static_cast<double>(header.particles))
     error->all(FLERR, "fix mpc: load: {} has particles outside the box", load_file_);
+}
+
+// Records of all processes on all, process by process; for the few that colloids are.
+template <int D>
+template <class T>
+std::vector<T> FixMPC<D>::everyones(const std::vector<T> &mine) const
+{
+  const int size = static_cast<int>(mine.size() * sizeof(T));
+  std::vector<int> sizes(comm->nprocs), starts(comm->nprocs);
+  MPI_Allgather(&size, 1, MPI_INT, sizes.data(), 1, MPI_INT, world);
+  for (int p = 1; p < comm->nprocs; ++p) starts[p] = starts[p - 1] + sizes[p - 1];
+  std::vector<T> all((starts.back() + sizes.back()) / sizeof(T));
+  MPI_Allgatherv(mine.data(), size, MPI_BYTE, all.data(), sizes.data(), starts.data(), MPI_BYTE,
+                 world);
+  return all;
 }
 
 // Visit the particles of all processes on the first, process by process.
@@ -368,12 +379,18 @@ template <int D> template <class Visit> void FixMPC<D>::gather(const Visit &visi
   }
 }
 
+template <int D> mpc::FluidHeader FixMPC<D>::fluid_header() const
+{
+  mpc::FluidHeader header{{}, D, static_cast<std::int64_t>(solver_->particles()),
+                          static_cast<std::int64_t>(solver_->collisions())};
+  std::memcpy(header.magic, MAGIC, sizeof MAGIC);
+  return header;
+}
+
 template <int D> void FixMPC<D>::save_fluid(const std::string &name)
 {
   FILE *file = nullptr;
-  Header header{{}, D, static_cast<std::int64_t>(solver_->particles()),
-                static_cast<std::int64_t>(solver_->collisions())};
-  std::memcpy(header.magic, MAGIC, sizeof MAGIC);
+  const auto header = fluid_header();
   bool written = true;
   if (comm->me == 0) {
     file = std::fopen(name.c_str(), "wb");
@@ -400,23 +417,26 @@ template <int D> int FixMPC<D>::modify_param(int narg, char **arg)
   return 2;
 }
 
-// The whole fluid, in the order each process has it: that order decides how sums are rounded.
+// The whole fluid in the order each process has it, and the last forces on the colloids: orders and
+// forces decide the last bits, so that a continued run repeats an uninterrupted one.
 template <int D> void FixMPC<D>::write_restart(FILE *file)
 {
   if (!solver_ || open_)
     error->all(FLERR, "fix mpc: restart: the step {} must be a multiple of N = {}",
                update->ntimestep, every_);
-  const double bytes = sizeof(Header) + solver_->particles() * sizeof(Particle<D>);
+  const auto pulls = everyones(pulls_);
+  const double bytes = sizeof(RestartHeader) + pulls.size() * sizeof(Pull) +
+      solver_->particles() * sizeof(Particle<D>);
   if (bytes > INT_MAX)
     error->all(FLERR, "fix mpc: restart: {} particles are too many for a LAMMPS restart file; "
                "use fix_modify save and load", solver_->particles());
   if (comm->me == 0) {
-    Header header{{}, D, static_cast<std::int64_t>(solver_->particles()),
-                  static_cast<std::int64_t>(solver_->collisions())};
-    std::memcpy(header.magic, MAGIC, sizeof MAGIC);
+    const RestartHeader header{fluid_header(), comm->nprocs,
+                               static_cast<std::int64_t>(pulls.size())};
     const int size = static_cast<int>(bytes);
     std::fwrite(&size, sizeof size, 1, file);
     std::fwrite(&header, sizeof header, 1, file);
+    std::fwrite(pulls.data(), sizeof(Pull), pulls.size(), file);
   }
   gather([&](const std::vector<Particle<D>> &particles) {
     std::fwrite(particles.data(), sizeof particles[0], particles.size(), file);
@@ -425,13 +445,23 @@ template <int D> void FixMPC<D>::write_restart(FILE *file)
 
 template <int D> void FixMPC<D>::restart(char *buffer)
 {
-  Header header;
-  std::memcpy(&header, buffer, sizeof header);
+  const auto read = [&](auto &record) {
+    std::memcpy(&record, buffer, sizeof record);
+    buffer += sizeof record;
+  };
+  RestartHeader header;
+  read(header);
+  if (header.fluid.dimension != D) error->all(FLERR, "fix mpc: restart: of another dimension");
+  for (std::int64_t n = 0; n < header.pulls; ++n) {
+    Pull pull;
+    read(pull);
+    if (header.processes == comm->nprocs && pull.process == comm->me) pulls_.push_back(pull);
+  }
   make_solver();
-  solver_->reset(header.collisions, lower(), upper());
-  Particle<D> particle;
-  for (std::int64_t n = 0; n < header.particles; ++n) {
-    std::memcpy(&particle, buffer + sizeof header + n * sizeof particle, sizeof particle);
+  solver_->reset(header.fluid.collisions, lower(), upper());
+  for (std::int64_t n = 0; n < header.fluid.particles; ++n) {
+    Particle<D> particle;
+    read(particle);
     solver_->add(particle);
   }
   solver_->count();
@@ -473,25 +503,25 @@ template <int D> void FixMPC<D>::snapshot()
                  "colloids: use comm_modify cutoff {:.4g} or more", comm->cutghost[a], needed);
 }
 
-// After atoms were exchanged: find each colloid again, the image nearest to where it was.
-template <int D> void FixMPC<D>::match_slots()
+// The local or ghost atom of a colloid nearest to a place, within a distance; -1 if there is none.
+template <int D>
+int FixMPC<D>::atom_at(double id, const Vector<D> &x, double distance) const
 {
-  for (std::size_t s = 0; s < slots_.size(); ++s) {
-    double least = edge_ * edge_;    // a colloid moves much less, its images are much further
-    atoms_[s] = -1;
-    for (int i = 0; i < atom->nlocal + atom->nghost; ++i) {
-      if (static_cast<double>(atom->tag[i]) != slots_[s].id) continue;
-      double distance = 0;
-      for (int a = 0; a < D; ++a) {
-        const double moved = atom->x[i][a] - domain->boxlo[a] - slots_[s].x[a];
-        distance += moved * moved;
-      }
-      if (distance < least) {
-        least = distance;
-        atoms_[s] = i;
-      }
+  int nearest = -1;
+  double least = distance * distance;
+  for (int i = 0; i < atom->nlocal + atom->nghost; ++i) {
+    if (static_cast<double>(atom->tag[i]) != id) continue;
+    double square = 0;
+    for (int a = 0; a < D; ++a) {
+      const double separation = atom->x[i][a] - domain->boxlo[a] - x[a];
+      square += separation * separation;
+    }
+    if (square <= least) {
+      least = square;
+      nearest = i;
     }
   }
+  return nearest;
 }
 
 // An image that is no longer among the ghosts is out of reach: it stays where it was seen last.
@@ -504,8 +534,9 @@ template <int D> void FixMPC<D>::read_colloids()
 
 template <int D> void FixMPC<D>::add_forces()
 {
-  if (interactions_.empty() || !open_) return;
-  if (neighbor->ago == 0) match_slots();
+  if (neighbor->ago == 0)    // atoms were exchanged; a colloid moves much less than its images
+    for (std::size_t s = 0; s < slots_.size(); ++s)
+      atoms_[s] = atom_at(slots_[s].id, slots_[s].x, edge_);
   read_colloids();
   guarded([&] { solver_->coupling()->forces(slots_, forces_); });
   for (std::size_t s = 0; s < slots_.size(); ++s)
@@ -523,14 +554,37 @@ template <int D> template <class Action> void FixMPC<D>::guarded(const Action &a
   }
 }
 
-template <int D> void FixMPC<D>::setup_pre_reverse(int, int)
+template <int D> void FixMPC<D>::remember_pulls()
 {
-  add_forces();
+  pulls_.clear();
+  for (std::size_t s = 0; s < slots_.size(); ++s)
+    if (mpc::square<D>(forces_[s]) > 0)
+      pulls_.push_back({static_cast<double>(comm->me), slots_[s].id, slots_[s].x, forces_[s]});
 }
 
-template <int D> void FixMPC<D>::setup(int)
+// Add the remembered forces, if all colloids are where they were.
+template <int D> bool FixMPC<D>::repeat_pulls()
 {
-  if (!open_) snapshot();
+  std::vector<int> atoms;
+  for (const auto &pull : pulls_) atoms.push_back(atom_at(pull.id, pull.x, 1e-9 * edge_));
+  const bool moved = std::count(atoms.begin(), atoms.end(), -1) > 0;
+  double known = static_cast<double>(pulls_.size());
+  processes_.sum(&known, 1);
+  if (processes_.any(moved) || known == 0) return false;
+  for (std::size_t k = 0; k < atoms.size(); ++k)
+    for (int a = 0; a < D; ++a) atom->f[atoms[k]][a] += pulls_[k].force[a];
+  return true;
+}
+
+template <int D> void FixMPC<D>::setup_pre_reverse(int, int)
+{
+  if (interactions_.empty()) return;
+  if (!open_) {
+    snapshot();
+    if (repeat_pulls()) return;
+    guarded([&] { solver_->find_near(slots_, colloid_speed_); });
+  }
+  add_forces();
 }
 
 template <int D> void FixMPC<D>::initial_integrate(int)
@@ -545,7 +599,7 @@ template <int D> void FixMPC<D>::initial_integrate(int)
 
 template <int D> void FixMPC<D>::pre_reverse(int, int)
 {
-  add_forces();
+  if (!interactions_.empty()) add_forces();
 }
 
 template <int D> void FixMPC<D>::final_integrate()
@@ -557,7 +611,10 @@ template <int D> void FixMPC<D>::end_of_step()
 {
   guarded([&] { solver_->end_interval(); });
   open_ = false;
-  if (!interactions_.empty()) snapshot();
+  if (!interactions_.empty()) {
+    remember_pulls();
+    snapshot();
+  }
   if (profile_every_ && update->ntimestep % profile_every_ == 0) write_profile();
 }
 

@@ -23,7 +23,6 @@ template <int D> class FixMPC : public Fix {
   int setmask() override;
   void init() override;
   void setup_pre_reverse(int, int) override;
-  void setup(int) override;
   void initial_integrate(int) override;
   void pre_reverse(int, int) override;
   void final_integrate() override;
@@ -42,24 +41,34 @@ template <int D> class FixMPC : public Fix {
     double epsilon, sigma;
   };
 
+  // What this process's fluid did to a colloid or image at the last collision step.
+  struct Pull {
+    double process, id;
+    mpc::Vector<D> x, force;
+  };
+
   void parse(int, char **);
   void make_solver();
   void create_fluid();
   void load_fluid();
   void save_fluid(const std::string &);
+  mpc::FluidHeader fluid_header() const;
   std::array<int, D> bound(const double *) const;
   std::array<int, D> lower() const;
   std::array<int, D> upper() const;
 
   void snapshot();
-  void match_slots();
   void read_colloids();
+  int atom_at(double, const mpc::Vector<D> &, double) const;
+  void remember_pulls();
+  bool repeat_pulls();
   void add_forces();
   template <class Action> void guarded(const Action &);
 
   const std::vector<mpc::Layer> &profile();
   void write_profile();
   template <class Visit> void gather(const Visit &);
+  template <class T> std::vector<T> everyones(const std::vector<T> &) const;
 
   // arguments
   int every_, colloid_bit_;
@@ -86,6 +95,7 @@ template <int D> class FixMPC : public Fix {
   std::vector<mpc::Colloid<D>> slots_;
   std::vector<int> atoms_;    // index of each slot's atom; -1 when it left the ghosts
   std::vector<mpc::Vector<D>> forces_;
+  std::vector<Pull> pulls_;
   double colloid_speed_ = 0;
   bool open_ = false;         // within an interval
 

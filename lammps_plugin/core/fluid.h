@@ -23,6 +23,12 @@ template <int D> struct Particle {
   Vector<D> x, v;
 };
 
+// What precedes the particles in a file.
+struct FluidHeader {
+  char magic[8];
+  std::int64_t dimension, particles, collisions;
+};
+
 template <int D> struct Fluid {
   std::array<std::vector<double>, D> x, v;
   std::vector<std::uint32_t> id;

@@ -108,6 +108,15 @@ template <int D> class Solver {
     return total;
   }
 
+  // Let the coupling know the forces between intervals; nothing moves.
+  void find_near(const std::vector<Colloid<D>> &colloids, double colloid_speed)
+  {
+    turn();
+    method_.coupling->begin(grid_, colloids, colloid_speed);
+    method_.coupling->take(fluid_, 0, fluid_.size());
+    method_.coupling->ready();
+  }
+
   void begin_interval(const std::vector<Colloid<D>> &colloids, double colloid_speed)
   {
     if (collisions_ % SORT_INTERVAL == 0) sort_by_tile();
