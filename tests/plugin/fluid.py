@@ -41,7 +41,9 @@ def run_mpc(
     write_deck(scene, folder, "mpc")
     with (folder / "in.lammps").open("a") as deck:
         deck.write("fix_modify solvent save end.fluid\n")
-        deck.write("write_dump all custom end.dump id x y vx vy modify sort id format float %.17g\n")
+        deck.write(
+            "write_dump all custom end.dump id x y vx vy modify sort id format float %.17g\n"
+        )
         deck.write(end)
     launcher = ["mpirun", "-np", str(ranks)] if ranks > 1 else []
     steps = str(collisions * scene.steps_per_collision)
