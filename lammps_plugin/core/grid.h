@@ -83,6 +83,17 @@ template <int D> struct Grid {
     return rows;
   }
 
+  // Visit this process's cells in order, with their rows in the whole grid.
+  template <class Visit> void each_cell(const Visit &visit) const
+  {
+    auto rows = lower;
+    const int count = cells();
+    for (int cell = 0; cell < count; ++cell) {
+      visit(cell, rows);
+      for (int a = 0; a < D && ++rows[a] == upper[a]; ++a) rows[a] = lower[a];
+    }
+  }
+
   // Number in the whole grid, which names the cell's random numbers.
   std::uint64_t number(const std::array<int, D> &rows) const
   {

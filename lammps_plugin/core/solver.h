@@ -169,7 +169,7 @@ template <int D> class Solver {
  private:
   static constexpr int BLOCK = 512;           // particles; their state fits the first-level cache
   static constexpr int SORT_INTERVAL = 64;    // collisions, in which a particle moves a few cells
-  static constexpr int TILE = 16;             // cells along each edge of what shares the cache
+  static constexpr int TILE = D == 2 ? 16 : 8;    // cells along each edge; they share a cache
   static constexpr int STRAY = -1, TAKEN = -2;    // instead of a cell
 
   void set_cells(const std::array<int, D> &lower, const std::array<int, D> &upper)
@@ -272,14 +272,15 @@ template <int D> class Solver {
 
   void add_to(CellSum<D> &sum, int i)
   {
-    double squares = 0;
-    for (int a = 0; a < D; ++a) {
-      const double v = fluid_.v[a][i];
-      sum.momentum[a] += v;
-      squares += v * v;
+    const double x = fluid_.v[0][i], y = fluid_.v[1][i];
+    if constexpr (D == 2) {
+      sum.momentum += pack(x, y);
+      sum.squares_and_count += pack(x * x + y * y, 1);
+    } else {
+      const double z = fluid_.v[2][i];
+      sum.momentum += pack(x, y, z);
+      sum.squares_and_count += pack(x * x + y * y + z * z, 1);
     }
-    sum.squares += squares;
-    sum.count += 1;
   }
 
   // The cell of a stray, if it is this process's after all.
@@ -370,18 +371,16 @@ template <int D> class Solver {
 
   void make_turns(const CounterRandom &random)
   {
-    for (int cell = 0; cell < grid_.cells(); ++cell) {
+    grid_.each_cell([&](int cell, const std::array<int, D> &rows) {
       const auto &sum = sums_[cell];
-      if (sum.count == 0) continue;
-      const auto rows = grid_.rows(cell);
       const auto number = grid_.number(rows);
-      const bool filled = cut_by_wall<D>(grid_, rows[1]) && sum.count < method_.density;
+      const bool filled = cut_by_wall<D>(grid_, rows[1]) && sum.count() < method_.density;
       const auto mean = filled
           ? mean_with_virtual_particles<D>(sum, method_.density, method_.temperature, random, number)
           : sum.mean();
       method_.rotation.draw(random, number, turns_[cell]);
       fix_point<D>(turns_[cell], mean);
-    }
+    });
   }
 
   // Particles that share cells come to lie near each other, so that the cost of a collision does

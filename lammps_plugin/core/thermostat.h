@@ -42,19 +42,19 @@ template <int D> class LayerThermostat : public Thermostat<D> {
     const auto &grid = collision.grid;
     const int layers = grid.shape[1];
     std::vector<double> totals(2 * layers);    // energies, then particles less occupied cells
-    for (int cell = 0; cell < grid.cells(); ++cell) {
-      const int layer = grid.rows(cell)[1];
-      totals[layer] += collision.sums[cell].relative_energy();
-      totals[layers + layer] += std::max(collision.sums[cell].count - 1, 0.0);
-    }
+    grid.each_cell([&](int cell, const std::array<int, D> &rows) {
+      totals[rows[1]] += collision.sums[cell].relative_energy();
+      totals[layers + rows[1]] += std::max(collision.sums[cell].count() - 1, 0.0);
+    });
     collision.processes.sum(totals.data(), 2 * layers);
-    for (int cell = 0; cell < grid.cells(); ++cell) {
-      const int layer = grid.rows(cell)[1];
-      const double present = totals[layer] / (0.5 * D * totals[layers + layer]);
+    std::vector<double> factors(layers, 1.0);
+    for (int layer = 0; layer < layers; ++layer)
       if (totals[layer] > 0)
-        scale_about<D>(collision.turns[cell], collision.mean_after(cell),
-                       std::sqrt(temperature_ / present));
-    }
+        factors[layer] =
+            std::sqrt(temperature_ * 0.5 * D * totals[layers + layer] / totals[layer]);
+    grid.each_cell([&](int cell, const std::array<int, D> &rows) {
+      scale_about<D>(collision.turns[cell], collision.mean_after(cell), factors[rows[1]]);
+    });
   }
 
  private:
@@ -68,18 +68,18 @@ template <int D> class MonteCarloThermostat : public Thermostat<D> {
 
   void scale(Collision<D> &collision) override
   {
-    for (int cell = 0; cell < collision.grid.cells(); ++cell) {
+    collision.grid.each_cell([&](int cell, const std::array<int, D> &rows) {
       const auto &sum = collision.sums[cell];
-      if (sum.count < 2) continue;
-      const auto number = collision.grid.number(collision.grid.rows(cell));
+      if (sum.count() < 2) return;
+      const auto number = collision.grid.number(rows);
       const auto u = uniforms(collision.random.words(Stream::Thermostat, number));
       double factor = 1 + STRENGTH * u[0];
       if (u[1] >= 0.5) factor = 1 / factor;
-      const double freedom = D * (sum.count - 1);
+      const double freedom = D * (sum.count() - 1);
       const double energy = sum.relative_energy() / temperature_;
       if (u[2] < std::exp(freedom * std::log(factor) - (factor * factor - 1) * energy))
         scale_about<D>(collision.turns[cell], collision.mean_after(cell), factor);
-    }
+    });
   }
 
  private:
@@ -97,7 +97,7 @@ template <int D> class RescalingThermostat : public Thermostat<D> {
     double energy = 0;
     for (int cell = 0; cell < collision.grid.cells(); ++cell)
       energy += collision.sums[cell].relative_energy() +
-          0.5 * collision.sums[cell].count * square<D>(collision.mean_after(cell));
+          0.5 * collision.sums[cell].count() * square<D>(collision.mean_after(cell));
     collision.processes.sum(&energy, 1);
     if (energy > 0) {
       const double factor = std::sqrt(0.5 * D * collision.particles * temperature_ / energy);

@@ -21,7 +21,7 @@ Vector<D> mean_with_virtual_particles(const CellSum<D> &sum, double density, dou
                                       const CounterRandom &random, std::uint64_t cell)
 {
   const auto z = normals(random.words(Stream::Wall, cell));
-  const double width = std::sqrt((density - sum.count) * temperature);
+  const double width = std::sqrt((density - sum.count()) * temperature);
   Vector<D> mean;
   for (int a = 0; a < D; ++a) mean[a] = (sum.momentum[a] + width * z[a]) / density;
   return mean;
