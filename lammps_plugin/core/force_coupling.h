@@ -49,11 +49,15 @@ template <int D> class ForceCoupling : public Coupling<D> {
   void take(const Fluid<D> &fluid, int begin, int end) override
   {
     const double usual = square_of(CHECKED_SPEED * thermal_speed_);
+    listed_.resize(end - begin);
+    int listed = 0;    // a list without branches: who is in it follows no pattern
     for (int i = begin; i < end; ++i) {
       double speed = 0;
       for (int a = 0; a < D; ++a) speed += fluid.v[a][i] * fluid.v[a][i];
-      if (head_[fluid.cell[i]] >= 0 || speed > usual) consider(fluid, i, std::sqrt(speed));
+      listed_[listed] = i;
+      listed += (head_[fluid.cell[i]] >= 0) | (speed > usual);
     }
+    for (int k = 0; k < listed; ++k) consider(fluid, listed_[k]);
   }
 
   const std::vector<int> &taken() const override { return taken_; }
@@ -232,25 +236,26 @@ template <int D> class ForceCoupling : public Coupling<D> {
     }
   }
 
-  // Take a particle if it could come within a cutoff, and pair it.
-  void consider(const Fluid<D> &fluid, int i, double speed)
+  // Take a particle if it could come within a cutoff, and pair it. Its cell lists the images of
+  // colloids that are near; a fast one meets all images, and so must itself be the one in its cell.
+  void consider(const Fluid<D> &fluid, int i)
   {
     auto particle = fluid.particle(i);
-    const auto rows = grid_.rows(fluid.cell[i]);
-    for (int a = 0; a < D; ++a)    // the image inside its cell
-      if (grid_.periodic[a])
-        particle.x[a] -= grid_.box[a] *
-            std::round((particle.x[a] - grid_.centre(a, rows[a])) / grid_.box[a]);
-
+    const double speed = std::sqrt(square<D>(particle.v));
+    const bool fast = speed > CHECKED_SPEED * thermal_speed_;
+    if (fast) bring_into_cell(particle.x, fluid.cell[i]);
     const double travel = allowance_ + interval_ * flight_speed(speed);
+    const auto before = seconds_.size();
+    const int number = static_cast<int>(candidates_.size());
     bool within = false;
     int nearest = -1;
     double least = std::numeric_limits<double>::infinity();
-    const auto before = seconds_.size();
-    const int number = static_cast<int>(candidates_.size());
     const auto meet = [&](int c) {
       double r2 = 0;
-      for (int a = 0; a < D; ++a) r2 += square_of(particle.x[a] - colloids_[c].x[a]);
+      for (int a = 0; a < D; ++a) {
+        const double separation = particle.x[a] - colloids_[c].x[a];
+        r2 += square_of(fast ? separation : separation - turns(a, separation) * grid_.box[a]);
+      }
       within |= r2 < square_of(cutoff(colloids_[c].sigma) + travel);
       if (r2 >= square_of(pair_reach(colloids_[c]))) return;
       if (nearest >= 0) seconds_.push_back({number, r2 < least ? nearest : c});
@@ -259,7 +264,7 @@ template <int D> class ForceCoupling : public Coupling<D> {
         least = r2;
       }
     };
-    if (speed > CHECKED_SPEED * thermal_speed_) {
+    if (fast) {
       for (int c = 0; c < static_cast<int>(colloids_.size()); ++c) meet(c);
       if (within && nearest < 0) nearest = 0;    // pair_fast pairs it with the rest
     } else {
@@ -269,8 +274,23 @@ template <int D> class ForceCoupling : public Coupling<D> {
       seconds_.resize(before);
       return;
     }
+    if (!fast)
+      for (int a = 0; a < D; ++a)
+        particle.x[a] -= turns(a, particle.x[a] - colloids_[nearest].x[a]) * grid_.box[a];
     candidates_.push_back({i, nearest, particle});
     taken_.push_back(i);
+  }
+
+  // Whole boxes in a separation.
+  double turns(int axis, double separation) const
+  {
+    return grid_.periodic[axis] ? std::rint(separation * (1 / grid_.box[axis])) : 0.0;
+  }
+
+  void bring_into_cell(Vector<D> &x, int cell) const
+  {
+    const auto rows = grid_.rows(cell);
+    for (int a = 0; a < D; ++a) x[a] -= turns(a, x[a] - grid_.centre(a, rows[a])) * grid_.box[a];
   }
 
   // Pair the particles that have become fast with all colloids.
@@ -383,6 +403,7 @@ template <int D> class ForceCoupling : public Coupling<D> {
   std::vector<int> head_;                 // of each cell, its list of entries; -1 for none
   std::vector<Entry> entries_;
   std::vector<Candidate> candidates_;
+  std::vector<int> listed_;
 
   // taken particles, those of one colloid behind each other: colloid c has start_[c] ...
   std::vector<int> taken_, start_, place_;

@@ -169,7 +169,7 @@ template <int D> class Solver {
  private:
   static constexpr int BLOCK = 512;           // particles; their state fits the first-level cache
   static constexpr int SORT_INTERVAL = 64;    // collisions, in which a particle moves a few cells
-  static constexpr int TILE = D == 2 ? 16 : 8;    // cells along each edge; they share a cache
+  static constexpr int TILE = D == 2 ? 8 : 4;    // cells along each edge; they share a cache
   static constexpr int STRAY = -1, TAKEN = -2;    // instead of a cell
 
   void set_cells(const std::array<int, D> &lower, const std::array<int, D> &upper)
