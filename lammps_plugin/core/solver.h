@@ -168,7 +168,7 @@ template <int D> class Solver {
 
  private:
   static constexpr int BLOCK = 512;           // particles; their state fits the first-level cache
-  static constexpr int AHEAD = 16;            // particles
+  static constexpr int AHEAD = 32;            // particles
   static constexpr int CACHE_LINE = 64;       // bytes
   static constexpr int SORT_INTERVAL = 64;    // collisions, in which a particle moves a few cells
   static constexpr int TILE = D == 2 ? 8 : 4;    // cells along each edge; they share a cache
