@@ -20,7 +20,10 @@ def test_core(build: str, tmp_path: Path) -> None:
     if compiler is None:
         pytest.skip("no C++ compiler")
     program = tmp_path / "core_tests"
-    sources = [f"-I{ROOT / 'lammps_plugin' / 'core'}", str(Path(__file__).parent / "core_tests.cpp")]
+    sources = [
+        f"-I{ROOT / 'lammps_plugin' / 'core'}",
+        str(Path(__file__).parent / "core_tests.cpp"),
+    ]
     warnings = ["-std=c++17", "-Wall", "-Wextra", "-Werror", "-Wno-psabi", "-ffp-contract=off"]
     subprocess.run([compiler, *warnings, *BUILDS[build], *sources, "-o", program], check=True)
     done = subprocess.run([program], capture_output=True, text=True, check=False)
