@@ -48,6 +48,7 @@ template <int D> struct Fluid {
 
   void append(const Particle<D> &p, int in_cell)
   {
+    if (id.size() == id.capacity()) grow();
     for (int a = 0; a < D; ++a) {
       x[a].push_back(p.x[a]);
       v[a].push_back(p.v[a]);
@@ -77,7 +78,21 @@ template <int D> struct Fluid {
     cell.clear();
   }
 
+  double bytes() const { return id.capacity() * (2.0 * D * sizeof(double) + 8); }
+
  private:
+  // By little: the doubling of a vector would waste up to half of the memory.
+  void grow()
+  {
+    const auto capacity = id.size() + id.size() / 16 + 1024;
+    for (int a = 0; a < D; ++a) {
+      x[a].reserve(capacity);
+      v[a].reserve(capacity);
+    }
+    id.reserve(capacity);
+    cell.reserve(capacity);
+  }
+
   template <class T> static void take_last(std::vector<T> &values, int i)
   {
     values[i] = values.back();

@@ -159,11 +159,11 @@ template <int D> class Solver {
     collide();
   }
 
+  // In bytes, on this process.
   double memory() const
   {
-    return static_cast<double>(fluid_.id.capacity()) * (2 * D * sizeof(double) + 8) +
-        static_cast<double>(sums_.capacity()) * (sizeof(CellSum<D>) + sizeof(Turn<D>)) +
-        static_cast<double>(order_.capacity()) * 4 + static_cast<double>(sorted_.capacity()) * 8;
+    return fluid_.bytes() + sums_.capacity() * (1.0 * sizeof(CellSum<D>) + sizeof(Turn<D>)) +
+        order_.capacity() * 1.0 * sizeof(int) + sorted_.capacity() * 1.0 * sizeof(double);
   }
 
  private:

@@ -338,6 +338,30 @@ void coupling_faults()
   CHECK(close(std::stod(with({3.9, 2}, {4.9, 2}, {4.9, 2})), 24, 1e-9));    // an image
 }
 
+// Buffers for sorting included; 10 particles in a cell.
+template <int D> void memory_per_particle(int cells, double most)
+{
+  Processes alone;
+  Vector<D> box;
+  box.fill(cells);
+  std::array<bool, D> periodic;
+  periodic.fill(true);
+  const Grid<D> grid(box, periodic, 1.0);
+  Solver<D> solver(grid, method<D>(), alone);
+  solver.reset(0, grid.lower, grid.upper);
+  const int count = 10 * grid.cells();
+  for (int i = 0; i < count; ++i) {
+    Particle<D> particle{static_cast<double>(i), {}, {}};
+    const auto u = uniforms(CounterRandom{1, 0}.words(Stream::Create, i));
+    for (int a = 0; a < D; ++a) particle.x[a] = cells * u[a];
+    solver.add(particle);
+  }
+  solver.count();
+  solver.begin_interval({}, 0);
+  solver.end_interval();
+  CHECK(solver.memory() / count <= most);
+}
+
 }    // namespace
 
 int main()
@@ -355,6 +379,8 @@ int main()
   layers_are_sums();
   only_what_is_near_needs_integration();
   coupling_faults();
+  memory_per_particle<2>(100, 80);
+  memory_per_particle<3>(22, 112);
   std::printf("%d failures\n", failures);
   return failures > 0;
 }
