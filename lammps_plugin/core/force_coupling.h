@@ -21,7 +21,8 @@ namespace mpc {
 template <int D> class ForceCoupling : public Coupling<D> {
  public:
   ForceCoupling(double interval, double temperature, const Vector<D> &field, double width)
-    : interval_(interval), thermal_speed_(std::sqrt(temperature)), field_(field), width_(width)
+    : interval_(interval), thermal_speed_(std::sqrt(temperature)),
+      usual_(square_of(CHECKED_SPEED * thermal_speed_)), field_(field), width_(width)
   {
   }
 
@@ -41,6 +42,11 @@ template <int D> class ForceCoupling : public Coupling<D> {
     candidates_.clear();
     seconds_.clear();
 
+    ranges_.clear();
+    for (const auto &colloid : colloids)
+      ranges_.push_back({cutoff(colloid.sigma), square_of(pair_reach(colloid))});
+    for (int a = 0; a < D; ++a) turns_per_length_[a] = grid.periodic[a] ? 1 / grid.box[a] : 0.0;
+
     head_.assign(grid.cells(), -1);
     entries_.clear();
     for (int c = 0; c < static_cast<int>(colloids.size()); ++c) list_cells(c);
@@ -48,14 +54,13 @@ template <int D> class ForceCoupling : public Coupling<D> {
 
   void take(const Fluid<D> &fluid, int begin, int end) override
   {
-    const double usual = square_of(CHECKED_SPEED * thermal_speed_);
     listed_.resize(end - begin);
     int listed = 0;    // a list without branches: who is in it follows no pattern
     for (int i = begin; i < end; ++i) {
       double speed = 0;
       for (int a = 0; a < D; ++a) speed += fluid.v[a][i] * fluid.v[a][i];
       listed_[listed] = i;
-      listed += (head_[fluid.cell[i]] >= 0) | (speed > usual);
+      listed += (head_[fluid.cell[i]] >= 0) | (speed > usual_);
     }
     for (int k = 0; k < listed; ++k) consider(fluid, listed_[k]);
   }
@@ -177,6 +182,9 @@ template <int D> class ForceCoupling : public Coupling<D> {
   struct Entry {
     int colloid, next;
   };
+  struct Range {
+    double cutoff, square_reach;    // of the force, and of pairing squared
+  };
 
   static double square_of(double a) { return a * a; }
 
@@ -241,10 +249,9 @@ template <int D> class ForceCoupling : public Coupling<D> {
   void consider(const Fluid<D> &fluid, int i)
   {
     auto particle = fluid.particle(i);
-    const double speed = std::sqrt(square<D>(particle.v));
-    const bool fast = speed > CHECKED_SPEED * thermal_speed_;
+    const double square_speed = square<D>(particle.v);
+    const bool fast = square_speed > usual_;
     if (fast) bring_into_cell(particle.x, fluid.cell[i]);
-    const double travel = allowance_ + interval_ * flight_speed(speed);
     const auto before = seconds_.size();
     const int number = static_cast<int>(candidates_.size());
     bool within = false;
@@ -256,8 +263,12 @@ template <int D> class ForceCoupling : public Coupling<D> {
         const double separation = particle.x[a] - colloids_[c].x[a];
         r2 += square_of(fast ? separation : separation - turns(a, separation) * grid_.box[a]);
       }
-      within |= r2 < square_of(cutoff(colloids_[c].sigma) + travel);
-      if (r2 >= square_of(pair_reach(colloids_[c]))) return;
+      const auto &range = ranges_[c];
+      const bool paired = r2 < range.square_reach;
+      if (!paired && !fast) return;
+      const double travel = allowance_ + interval_ * flight_speed(std::sqrt(square_speed));
+      within |= r2 < square_of(range.cutoff + travel);
+      if (!paired) return;
       if (nearest >= 0) seconds_.push_back({number, r2 < least ? nearest : c});
       if (r2 < least) {
         nearest = c;
@@ -284,7 +295,7 @@ template <int D> class ForceCoupling : public Coupling<D> {
   // Whole boxes in a separation.
   double turns(int axis, double separation) const
   {
-    return grid_.periodic[axis] ? std::rint(separation * (1 / grid_.box[axis])) : 0.0;
+    return std::rint(separation * turns_per_length_[axis]);
   }
 
   void bring_into_cell(Vector<D> &x, int cell) const
@@ -296,18 +307,17 @@ template <int D> class ForceCoupling : public Coupling<D> {
   // Pair the particles that have become fast with all colloids.
   void pair_fast()
   {
-    const double usual = square_of(CHECKED_SPEED * thermal_speed_);
     const int count = static_cast<int>(taken_.size());
     int fast = 0;
     for (int k = 0; k < count; ++k) {
       double speed = 0;
       for (int a = 0; a < D; ++a) speed += v_[a][k] * v_[a][k];
-      fast += speed > usual;
+      fast += speed > usual_;
     }
     for (int k = 0; fast > 0 && k < count; ++k) {
       double speed = 0;
       for (int a = 0; a < D; ++a) speed += v_[a][k] * v_[a][k];
-      if (speed <= usual) continue;
+      if (speed <= usual_) continue;
       --fast;
       if (with_all_[k]) continue;
       with_all_[k] = true;
@@ -322,7 +332,9 @@ template <int D> class ForceCoupling : public Coupling<D> {
   // Forces between a colloid and its own particles first ... last - 1; that on the colloid.
   Vector<D> force_of(const Colloid<D> &colloid, int first, int last)
   {
-    const double core = square_of(CORE * colloid.sigma);
+    const auto of = colloid;    // copies: for all the compiler knows, the loop could write there
+    const auto field = field_;
+    const double core = square_of(CORE * of.sigma);
     int deep = 0;
     std::array<double *, D> pull, after;
     std::array<const double *, D> x;
@@ -336,14 +348,14 @@ template <int D> class ForceCoupling : public Coupling<D> {
       Vector<D> separation;
       double r2 = 0;
       for (int a = 0; a < D; ++a) {
-        separation[a] = x[a][k] - colloid.x[a];
+        separation[a] = x[a][k] - of.x[a];
         r2 += separation[a] * separation[a];
       }
-      const double strength = force_over_distance(colloid, r2);
+      const double strength = force_over_distance(of, r2);
       deep += !(r2 > core);    // true for NaN
       for (int a = 0; a < D; ++a) {
         pull[a][k] = strength * separation[a];
-        after[a][k] = strength * separation[a] + field_[a];
+        after[a][k] = strength * separation[a] + field[a];
       }
     }
     if (deep > 0) find_in_core(colloid, first, last);
@@ -394,11 +406,14 @@ template <int D> class ForceCoupling : public Coupling<D> {
   }
 
   double interval_, thermal_speed_;
+  double usual_;    // square of the checked speed
   Vector<D> field_;
   double width_;
 
   Grid<D> grid_{{}, {}, 1.0};             // as it was when the interval began
   std::vector<Colloid<D>> colloids_;      // as they were
+  std::vector<Range> ranges_;             // of each colloid
+  Vector<D> turns_per_length_;            // 0 across walls
   double allowance_ = 0;
   std::vector<int> head_;                 // of each cell, its list of entries; -1 for none
   std::vector<Entry> entries_;
