@@ -306,7 +306,7 @@ template <int D> void FixMPC<D>::create_fluid()
       const auto u = mpc::uniforms(random.words(mpc::Stream::Create, item, trial));
       for (int a = 0; a < D; ++a) particle.x[a] = u[a] * domain->prd[a];
     } while (overlaps(particle.x));
-    const auto z = mpc::normals(random.words(mpc::Stream::Create, item));
+    const auto z = mpc::normals<D>(random.words(mpc::Stream::Create, item));
     for (int a = 0; a < D; ++a) particle.v[a] = std::sqrt(temperature_) * z[a];
     solver_->add(particle);
   }

@@ -22,7 +22,8 @@ template <int D> class ForceCoupling : public Coupling<D> {
  public:
   ForceCoupling(double interval, double temperature, const Vector<D> &field, double width)
     : interval_(interval), thermal_speed_(std::sqrt(temperature)),
-      usual_(square_of(CHECKED_SPEED * thermal_speed_)), field_(field), width_(width)
+      usual_(square_of(CHECKED_SPEED * thermal_speed_)), field_(field),
+      gain_(std::sqrt(square<D>(field)) * interval), width_(width)
   {
   }
 
@@ -190,7 +191,7 @@ template <int D> class ForceCoupling : public Coupling<D> {
 
   double flight_speed(double speed) const
   {
-    return speed + std::sqrt(square<D>(field_)) * interval_;
+    return speed + gain_;
   }
 
   static double force_over_distance(const Colloid<D> &colloid, double r2)
@@ -408,6 +409,7 @@ template <int D> class ForceCoupling : public Coupling<D> {
   double interval_, thermal_speed_;
   double usual_;    // square of the checked speed
   Vector<D> field_;
+  double gain_;     // of speed in an interval, from the field
   double width_;
 
   Grid<D> grid_{{}, {}, 1.0};             // as it was when the interval began

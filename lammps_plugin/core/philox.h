@@ -50,12 +50,12 @@ inline std::array<double, 4> uniforms(const Words &words)
   return {uniform(words[0]), uniform(words[1]), uniform(words[2]), uniform(words[3])};
 }
 
-// Standard normals by Box and Muller.
-inline std::array<double, 4> normals(const Words &words)
+// The first `count` standard normals of a block, by Box and Muller; they come in pairs.
+template <int count> std::array<double, 4> normals(const Words &words)
 {
   const auto u = uniforms(words);
-  std::array<double, 4> z;
-  for (int pair = 0; pair < 4; pair += 2) {
+  std::array<double, 4> z{};
+  for (int pair = 0; pair < count; pair += 2) {
     const double radius = std::sqrt(-2 * std::log1p(-u[pair]));
     const double angle = 2 * M_PI * u[pair + 1];
     z[pair] = radius * std::cos(angle);

@@ -92,7 +92,7 @@ template <int D> class BathSolvent : public RandomSolvent<D> {
   void redraw(Fluid<D> &fluid, const CounterRandom &random, Processes &, double) override
   {
     for (int i = 0; i < fluid.size(); ++i) {
-      const auto z = normals(random.words(Stream::Bath, fluid.id[i]));
+      const auto z = normals<D>(random.words(Stream::Bath, fluid.id[i]));
       for (int a = 0; a < D; ++a) fluid.v[a][i] = speed_ * z[a];
     }
   }

@@ -123,7 +123,7 @@ template <int D> class AndersenThermostat : public Thermostat<D> {
   {
     for (int i = 0; i < fluid.size(); ++i) {
       if (uniform(random.words(Stream::Thermostat, fluid.id[i])[0]) >= probability_) continue;
-      const auto z = normals(random.words(Stream::Thermostat, fluid.id[i], 1));
+      const auto z = normals<D>(random.words(Stream::Thermostat, fluid.id[i], 1));
       for (int a = 0; a < D; ++a) fluid.v[a][i] = speed_ * z[a];
     }
   }

@@ -20,7 +20,7 @@ template <int D>
 Vector<D> mean_with_virtual_particles(const CellSum<D> &sum, double density, double temperature,
                                       const CounterRandom &random, std::uint64_t cell)
 {
-  const auto z = normals(random.words(Stream::Wall, cell));
+  const auto z = normals<D>(random.words(Stream::Wall, cell));
   const double width = std::sqrt((density - sum.count()) * temperature);
   Vector<D> mean;
   for (int a = 0; a < D; ++a) mean[a] = (sum.momentum[a] + width * z[a]) / density;

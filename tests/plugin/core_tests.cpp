@@ -181,7 +181,7 @@ template <int D> std::vector<Particle<D>> many(int count)
     Particle<D> particle{static_cast<double>(i), {}, {}};
     for (int a = 0; a < D; ++a) {
       particle.x[a] = 4 * uniform(words[a]);
-      particle.v[a] = normals(words)[a];
+      particle.v[a] = normals<D>(words)[a];
     }
     particles.push_back(particle);
   }
