@@ -42,7 +42,7 @@ class Channel(FluidScene):
         default=None, description="initial distance of neighbouring centres [a0]; none: even"
     )
     sampling_interval: Positive = Field(
-        default=0.75, description="time between two outputs, in whole collisions [t0]"
+        default=0.75, description="time between two outputs, at least two collisions [t0]"
     )
     duration: Positive = Field(default=1000.0, description="time after equilibration [t0]")
     equilibration: NonNegative = Field(default=100.0, description="time left out [t0]")

@@ -17,6 +17,7 @@ from lammps_inputs.channel import Channel
 from lammps_inputs.initial_state import InitialState, initial_state
 from lammps_inputs.poiseuille import Poiseuille
 from lammps_inputs.scene import SceneError
+from lammps_inputs.viscosity import viscosity
 
 Scene = Channel | Poiseuille | Bulk
 Engine = Literal["srd", "mpc", "reference"]
@@ -109,8 +110,17 @@ def manifest(scene: Scene, engine: Engine) -> dict[str, Any]:
         "fluid_particles": scene.fluid_particles,
         "colloids": scene.colloids,
         "colloid_mass": scene.colloid_mass if isinstance(scene, Channel) else None,
+        "viscosity_theory": _viscosity_theory(scene),
         "seeds": {"seed": scene.seed, **(srd_seeds(scene) if engine == "srd" else {})},
     }
+
+
+def _viscosity_theory(scene: Scene) -> float | None:
+    """Kinetic theory's viscosity: none for a random solvent, or a 2D turn by 180 degrees."""
+    if scene.hydrodynamics != "on" or (scene.dimensions == 2 and scene.angle == 180):
+        return None
+    rotation = scene.rotation if isinstance(scene, Bulk) else "coordinate_axes"
+    return viscosity(scene.density, scene.collision_time, scene.angle, scene.dimensions, rotation)
 
 
 def write_deck(scene: Scene, directory: Path, engine: Engine = "srd") -> None:

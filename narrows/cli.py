@@ -2,6 +2,8 @@
 
 import typer
 
+from narrows.analyze_cli import analyze
+from narrows.lattice_cli import app as lattice_app
 from narrows.run_cli import deck, run
 
 app = typer.Typer(
@@ -10,5 +12,6 @@ app = typer.Typer(
     pretty_exceptions_enable=False,
     help="Particles driven through narrow spaces: scenes, LAMMPS decks, runs and their analysis.",
 )
-app.command()(deck)
-app.command()(run)
+for command in (deck, run, analyze):
+    app.command()(command)
+app.add_typer(lattice_app, name="lattice")

@@ -1,11 +1,17 @@
 """What tests of several packages share: commands of this environment, run as a user would."""
 
+import os
 import subprocess
 import sys
 from collections.abc import Callable
 from pathlib import Path
 
+import hypothesis
 import pytest
+
+hypothesis.settings.register_profile("ci", derandomize=True, deadline=None)
+if os.environ.get("CI"):
+    hypothesis.settings.load_profile("ci")
 
 COMMANDS = Path(sys.executable).parent
 ROOT = Path(__file__).parent.parent

@@ -16,7 +16,7 @@ from srd_driver.reference.faults import SimulationFault
 Array = NDArray[np.float64]
 Indices = NDArray[np.intp]
 
-CORE = 0.5  # of sigma: no closer approach, an energy of 7e4 kBT for the softest pair
+CORE = 0.5  # of sigma: no closer approach, 1.6e4 kBT of the 12-6 repulsion
 
 
 @dataclass(frozen=True)
@@ -78,7 +78,9 @@ class ColloidForces:
         self._fluid_pairs = fluid.within(reach[fluid.first], fluid_positions, colloid_positions)
 
         first, second = np.triu_indices(self._scene.colloids, k=1)
-        image = _nearest_image(colloid_positions, first, colloid_positions, second, self._scene)
+        image = _image(
+            colloid_positions[0, first] - colloid_positions[0, second], self._scene.length
+        )
         self._colloid_pairs = Pairs(first, second, image).within(
             self._scene.colloid_colloid.cutoff + 2 * self._colloid_allowance,
             colloid_positions,
@@ -131,8 +133,8 @@ class ColloidForces:
                 f"colloid {outside[0]} is at y = {y}, through a wall: the time step "
                 f"{scene.time_step:g} is too long for its wall potential, or the walls too weak"
             )
-        wall = scene.colloid_wall
-        on_colloids[1] += wall.force(lower) - wall.force(upper)
+        from_lower, from_upper = scene.colloid_wall.force([lower, upper])
+        on_colloids[1] += from_lower - from_upper
         return on_fluid, on_colloids
 
     def energy(self, fluid_positions: Array, colloid_positions: Array) -> float:
@@ -161,14 +163,15 @@ class ColloidForces:
 
 def _sums(indices: Indices, forces: Array, count: int) -> Array:
     """Forces (2, pairs) summed for each particle (2, count)."""
-    return np.stack([np.bincount(indices, weights=force, minlength=count) for force in forces])
+    sums = np.empty((2, count))
+    for axis, force in enumerate(forces):
+        sums[axis] = np.bincount(indices, weights=force, minlength=count)
+    return sums
 
 
-def _nearest_image(
-    first_positions: Array, first: Indices, second_positions: Array, second: Indices, scene: Channel
-) -> Array:
-    separation = first_positions[0, first] - second_positions[0, second]
-    image: Array = -scene.length * np.round(separation / scene.length)
+def _image(separation: Array, length: float) -> Array:
+    """What to add to separations along x to make them those of the nearest images."""
+    image: Array = -length * np.round(separation / length)
     return image
 
 
@@ -187,5 +190,4 @@ def _columns_near(fluid: Array, colloids: Array, reach: float, length: float) ->
     second = np.repeat(np.repeat(np.arange(colloids.shape[1]), len(offsets)), counts)
     within = np.arange(len(second)) - np.repeat(np.cumsum(counts) - counts, counts)
     first = by_column[np.repeat(start[near].ravel(), counts) + within]
-    separation = fluid[0, first] - colloids[0, second]
-    return Pairs(first, second, -length * np.round(separation / length))
+    return Pairs(first, second, _image(fluid[0, first] - colloids[0, second], length))

@@ -60,7 +60,7 @@ class CounterRandom:
 
 def uniform(words: Words) -> Array:
     """Uniforms in [0, 1) from the upper 53 bits of each word."""
-    uniforms: Array = (words >> np.uint64(11)) * 2.0**-53
+    uniforms: Array = (words >> np.uint64(11)).astype(float) * 2.0**-53
     return uniforms
 
 

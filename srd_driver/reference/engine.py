@@ -39,6 +39,7 @@ class ReferenceEngine:
         state = state or initial_state(scene)
         self.scene = scene
         self.collisions = 0
+        self._step = 0
         self._fluid_positions = np.array(state.fluid_positions.T, order="C")
         self._fluid_velocities = np.array(state.fluid_velocities.T, order="C")
         self._colloid_positions = np.array(state.colloid_positions.T, order="C")
@@ -85,7 +86,9 @@ class ReferenceEngine:
         Raises:
             SimulationFault: naming the particle and the step, when the state is broken.
         """
+        self._step = self.collisions * self.scene.steps_per_collision
         try:
+            self._check()
             for _ in range(collisions):
                 if self._coupling is None:
                     self._stream()
@@ -130,9 +133,9 @@ class ReferenceEngine:
 
     def save(self, file: str | PathLike[str]) -> None:
         """Write the state as npz; `load` continues from it bit for bit."""
-        with open(file, "wb") as stream_:
+        with open(file, "wb") as output:
             np.savez(
-                stream_,
+                output,
                 collisions=self.collisions,
                 fluid_positions=self._fluid_positions,
                 fluid_velocities=self._fluid_velocities,
@@ -167,8 +170,8 @@ class ReferenceEngine:
         )
 
     def _stream(self) -> None:
-        """Free flight for tau_c, or one MD step of the fluid where there is no MD (3.3)."""
-        self._step = self.collisions + 1
+        """Free flight of the fluid for tau_c (3.3)."""
+        self._step += 1
         stream(
             self._fluid_positions,
             self._fluid_velocities,
@@ -180,7 +183,6 @@ class ReferenceEngine:
     def _molecular_dynamics(self, coupling: ColloidForces) -> None:
         """Velocity Verlet of colloids and fluid through tau_c (3.45, 3.46, 3.51, 3.52)."""
         time = self.scene.time_step
-        self._step = self.collisions * self.scene.steps_per_collision
         self._find_pairs(coupling)
         fluid, colloids = self._accelerations(coupling)
         for _ in range(self.scene.steps_per_collision):
@@ -238,14 +240,18 @@ class ReferenceEngine:
             random_solvent.shuffle(velocities, random)
 
     def _check(self) -> None:
-        """Stop at a fluid particle that is nowhere, or not between the walls."""
-        if not np.isfinite(self._fluid_positions.sum() + self._fluid_velocities.sum()):
-            state = np.concatenate([self._fluid_positions, self._fluid_velocities])
-            lost = np.flatnonzero(~np.isfinite(state).all(axis=0))[0]
-            raise SimulationFault(
-                f"fluid particle {lost} has position {self._fluid_positions[:, lost]} and velocity "
-                f"{self._fluid_velocities[:, lost]}: not a number"
-            )
+        """Stop at a particle that is nowhere, or a fluid particle not between the walls."""
+        for kind, positions, velocities in (
+            ("fluid particle", self._fluid_positions, self._fluid_velocities),
+            ("colloid", self._colloid_positions, self._colloid_velocities),
+        ):
+            if not np.isfinite(positions.sum() + velocities.sum()):
+                finite = np.isfinite(np.concatenate([positions, velocities])).all(axis=0)
+                lost = np.flatnonzero(~finite)[0]
+                raise SimulationFault(
+                    f"{kind} {lost} has position {positions[:, lost]} and velocity "
+                    f"{velocities[:, lost]}: not a number"
+                )
         if self._width is not None:
             y = self._fluid_positions[1]
             if y.min() < 0 or y.max() > self._width:

@@ -34,20 +34,20 @@ def stream(
         width: distance between the walls [a0]; None: no walls.
     """
     end = positions + time * (velocities + 0.5 * time * acceleration)
+    end_velocities = velocities + time * acceleration
     if width is not None:
         crossing = np.flatnonzero((end[1] < 0) | (end[1] > width))
-        bounced = bounce_back(
-            positions[:, crossing],
-            velocities[:, crossing],
-            np.broadcast_to(acceleration, positions.shape)[:, crossing],
-            time,
-            width,
-            crossing,
-        )
+        if crossing.size:
+            end[:, crossing], end_velocities[:, crossing] = bounce_back(
+                positions[:, crossing],
+                velocities[:, crossing],
+                np.broadcast_to(acceleration, positions.shape)[:, crossing],
+                time,
+                width,
+                crossing,
+            )
     positions[:] = end
-    velocities += time * acceleration
-    if width is not None:
-        positions[:, crossing], velocities[:, crossing] = bounced
+    velocities[:] = end_velocities
 
 
 def bounce_back(
@@ -93,8 +93,8 @@ def bounce_back(
         v = -(v + contact * a)
         left = left - contact
     raise SimulationFault(
-        f"fluid particle {names[flying[0]]} meets the walls more than {MOST_BOUNCES} times in one "
-        "step: it is too fast, or pressed against a wall"
+        f"fluid particle {names[flying[0]]} meets the walls more than {MOST_BOUNCES} times in "
+        "one step: it is too fast, or pressed against a wall"
     )
 
 

@@ -1,5 +1,6 @@
 """Decks run with plain `lmp`, alone and on two processes, and contain only what they need."""
 
+import json
 from pathlib import Path
 from typing import Any
 
@@ -65,6 +66,7 @@ def test_gravity_changes_on_the_command_line(tmp_path: Path, command: Run) -> No
         command("lmp", "-in", "in.lammps", "-var", "gravity", gravity, cwd=tmp_path)
         *_, last = frames(tmp_path / "trajectory.lammpsdump").values()
         drift[gravity] = last[:, 5].mean()
+        assert json.loads((tmp_path / "variables.json").read_text())["gravity"] == float(gravity)
     assert drift["5.0"] > drift["0.1"] + 1
 
 

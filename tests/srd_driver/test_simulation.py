@@ -229,4 +229,13 @@ def test_manifest_tells_analysis_all_it_needs() -> None:
     assert told["equilibration_steps"] == 600
     assert told["colloid_mass"] == pytest.approx(125.664, abs=1e-3)
     assert told["periodic"] == [True, False]
+    assert told["fluid_looks"] == 2  # 10 collisions, looked at after 5 and 10
+    assert told["viscosity_theory"] == pytest.approx(5.0, abs=0.01)
     assert json.dumps(told, allow_nan=False)
+
+
+@pytest.mark.parametrize(
+    "fields", [{"hydrodynamics": "bath"}, {"hydrodynamics": "shuffle"}, {"angle": 180}]
+)
+def test_a_fluid_without_kinetic_theory_has_none(fields: dict[str, Any]) -> None:
+    assert manifest(channel(**fields), "reference")["viscosity_theory"] is None

@@ -1,0 +1,102 @@
+"""Means of correlated series with their statistical errors, from blocking.
+
+H. Flyvbjerg and H. G. Petersen, J. Chem. Phys. 91, 461 (1989): means over blocks of 2, 4, 8, ...
+samples become independent once a block outlasts the correlation, and their scatter then is the
+error. The block length is chosen by R. M. Lee et al., Phys. Rev. E 83, 066706 (2011).
+"""
+
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+Array = NDArray[np.float64]
+
+MIN_BLOCKS = 6  # an error from m blocks is itself uncertain by 1/sqrt(2(m - 1)): 32 % with 6
+MIN_BLOCK_LENGTH = 2  # in measured inefficiencies g: the error is then at most 20 % too small
+
+
+@dataclass(frozen=True)
+class Estimate:
+    """A number and its standard error.
+
+    `reason` says why either is None, or why the error is only a lower bound.
+    """
+
+    value: float | None
+    error: float | None
+    reason: str | None = None
+
+    def scaled(self, factor: float) -> "Estimate":
+        """The estimate in other units: value times the factor, error times its modulus."""
+        value = None if self.value is None else self.value * factor
+        error = None if self.error is None else self.error * abs(factor)
+        return Estimate(value, error, self.reason)
+
+    def as_json(self) -> dict[str, Any]:
+        """`{value, error}`, and `reason` where there is one."""
+        entry: dict[str, Any] = {"value": self.value, "error": self.error}
+        if self.reason is not None:
+            entry["reason"] = self.reason
+        return entry
+
+
+def blocking_curve(series: ArrayLike) -> tuple[NDArray[np.int64], Array]:
+    """Standard error of the mean of a series, by block length.
+
+    Args:
+        series: equidistant samples, (n,), at least 2.
+
+    Returns:
+        block lengths 1, 2, 4, ... [samples] and the error from each, both (levels,); every level
+        has at least two blocks. Samples that do not fill a last block are left out of it.
+
+    Raises:
+        ValueError: for fewer than 2 samples or an array that is not one-dimensional.
+    """
+    blocks = np.asarray(series, dtype=float)
+    if blocks.ndim != 1 or len(blocks) < 2:
+        raise ValueError(f"a series of at least 2 samples is needed, not shape {blocks.shape}")
+    lengths, errors = [], []
+    length = 1
+    while len(blocks) >= 2:
+        lengths.append(length)
+        errors.append(float(np.sqrt(blocks.var(ddof=1) / len(blocks))))
+        blocks = blocks[: len(blocks) // 2 * 2].reshape(-1, 2).mean(axis=1)
+        length *= 2
+    return np.array(lengths), np.array(errors)
+
+
+def mean(series: ArrayLike) -> Estimate:
+    """Mean of equidistant, correlated samples with its error.
+
+    With g = (error from blocks of B / error from single samples)^2, the statistical inefficiency
+    and at least 1, the block length is the smallest with B^3 > 2 n g^2 (Lee et al.), or, in a
+    series too short for that, the longest that leaves `MIN_BLOCKS` blocks. When that block is
+    shorter than `MIN_BLOCK_LENGTH` g the correlation is not resolved: the error is a lower bound,
+    and the estimate says so. Fewer than `MIN_BLOCKS` samples have no error.
+
+    Args:
+        series: samples, (n,).
+    """
+    samples = np.asarray(series, dtype=float)
+    if len(samples) == 0:
+        return Estimate(None, None, "no samples")
+    value = float(samples.mean())
+    if np.all(samples == samples[0]):
+        samples = np.zeros_like(samples)  # a constant has error 0, not the rounding of its mean
+    if len(samples) < MIN_BLOCKS:
+        return Estimate(value, None, f"{len(samples)} samples are too few for an error")
+    lengths, errors = blocking_curve(samples)
+    if errors[0] == 0:
+        return Estimate(value, 0.0)
+    usable = len(samples) // lengths >= MIN_BLOCKS
+    lengths, errors = lengths[usable], errors[usable]
+    inefficiency = np.maximum(1.0, (errors / errors[0]) ** 2)
+    plateau = lengths.astype(float) ** 3 > 2 * len(samples) * inefficiency**2
+    level = int(np.argmax(plateau)) if plateau.any() else len(lengths) - 1
+    error = float(errors[level])
+    if lengths[level] < MIN_BLOCK_LENGTH * inefficiency[level]:
+        return Estimate(value, error, f"at least: {len(samples)} samples are too correlated")
+    return Estimate(value, error)

@@ -1,0 +1,22 @@
+"""Temperature of the colloids, from their velocities across the channel."""
+
+import numpy as np
+from numpy.typing import NDArray
+
+Array = NDArray[np.float64]
+
+
+def colloid_temperature(velocities: Array, mass: float) -> Array:
+    """Kinetic temperature of the colloids in each frame, M_c <v_y^2> by equipartition.
+
+    Across the channel the walls allow no drift; along it a drift that changes or differs between
+    colloids would count as heat.
+
+    Args:
+        velocities: (T, N, d), y the second component [a0/t0].
+        mass: of one colloid, M_c [m_f].
+
+    Returns:
+        (T,) [kBT]; its mean is the temperature.
+    """
+    return np.asarray(mass * (velocities[:, :, 1] ** 2).mean(axis=1))

@@ -1,0 +1,67 @@
+"""Kinematic viscosity of the MPC fluid by kinetic theory.
+
+All formulas assume molecular chaos and Poisson occupation of the cells, and are a sum of a kinetic
+part, from particles that fly, and a collisional part, from momentum that a collision moves within
+its cell. Units a0 = kBT = m_f = 1, viscosity in a0^2/t0.
+"""
+
+import math
+
+from lammps_inputs.scene import Rotation
+
+
+def viscosity(
+    density: float,
+    collision_time: float,
+    angle: float,
+    dimensions: int = 2,
+    rotation: Rotation = "coordinate_axes",
+) -> float:
+    """Kinematic viscosity nu of a scene's fluid.
+
+    Args:
+        density: n_f, particles per cell.
+        collision_time: tau_c [t0].
+        angle: alpha [degrees].
+        dimensions: 2 or 3.
+        rotation: axis of the 3D rotation; about the coordinate axes it is by 90 degrees.
+    """
+    alpha = math.radians(angle)
+    if dimensions == 2:
+        return viscosity_2d(density, collision_time, alpha)
+    if rotation == "random_axis":
+        return viscosity_random_axis(density, collision_time, alpha)
+    return viscosity_coordinate_axes(density, collision_time)
+
+
+def viscosity_2d(density: float, collision_time: float, alpha: float) -> float:
+    """2D, rotation by +-alpha [rad] (tabatabaei-2009 3.16)."""
+    p = _colliding(density)
+    kinetic = collision_time * (1 / (p * (1 - math.cos(2 * alpha))) - 0.5)
+    return kinetic + p * (1 - math.cos(alpha)) / (12 * collision_time)
+
+
+def viscosity_coordinate_axes(density: float, collision_time: float) -> float:
+    """3D, +-90 degrees about the coordinate axes (hecht-2005 28, Poisson-corrected).
+
+    The printed kinetic factor (M + 2) / (4 (M - 1)) holds for exactly M particles in a cell; with
+    Poisson occupation it is (1 + 2 q) / (4 (1 - q)), q = (1 - e^-M) / M.
+    """
+    p = _colliding(density)
+    q = 1 - p
+    return collision_time * (1 + 2 * q) / (4 * p) + p / (18 * collision_time)
+
+
+def viscosity_random_axis(density: float, collision_time: float, alpha: float) -> float:
+    """3D, by alpha [rad] about an axis uniform on the sphere (3.8).
+
+    Gompper, Ihle, Kroll and Winkler, Adv. Polym. Sci. 221, 1 (2009), table 1.
+    """
+    p = _colliding(density)
+    kinetic = 5 / (p * (2 - math.cos(alpha) - math.cos(2 * alpha))) - 1
+    return collision_time / 2 * kinetic + p * (1 - math.cos(alpha)) / (18 * collision_time)
+
+
+def _colliding(density: float) -> float:
+    """(M - 1 + e^-M) / M, the mean of 1 - 1/n over the particles of Poisson cells."""
+    return 1 + math.expm1(-density) / density

@@ -1,0 +1,271 @@
+import json
+import math
+from typing import Any
+
+import numpy as np
+import pytest
+from scipy.integrate import quad
+
+from analysis import RunDirectoryError, analyze
+from tests.analysis.run_writer import (
+    BULK,
+    CHANNEL,
+    POISEUILLE,
+    half_cells,
+    write_channel,
+    write_manifest,
+    write_observables,
+    write_profile,
+)
+
+PNG = b"\x89PNG"
+
+
+def analyzed(path) -> dict[str, Any]:
+    """Runs the analysis; what it returns is what it wrote, strict JSON, and the figures exist."""
+    summary = analyze(path)
+
+    def refuse(constant: str) -> None:
+        raise AssertionError(f"{constant} is no JSON")
+
+    assert json.loads((path / "summary.json").read_text(), parse_constant=refuse) == summary
+    assert not list(path.glob("*.partial"))
+    assert summary["figures"] == sorted(file.name for file in path.glob("*.png"))
+    assert all((path / name).read_bytes().startswith(PNG) for name in summary["figures"])
+    return summary
+
+
+def poiseuille(path, intervals=1000, gravity=0.01, v_max=0.25, v_wall=0.05, noise=0.02, **changes):
+    """A parabola with noise; another one, twice as fast, during the equilibration."""
+    y = half_cells(10.0)
+    exact = [
+        quad(lambda s: v_wall + (v_max - v_wall) * 4 * s * (10 - s) / 100, c - 0.25, c + 0.25)[0]
+        / 0.5
+        for c in y
+    ]
+    random = np.random.default_rng(1)
+    velocity = exact + noise * random.normal(size=(intervals, len(y)))
+    velocity[:5] *= 2
+    fields = POISEUILLE | {"gravity": gravity} | changes.pop("fields", {})
+    write_manifest(path, "poiseuille", fields, **changes)
+    write_profile(path, y, np.full_like(velocity, 200.0), velocity)
+    temperature = 1 + 0.01 * random.normal(size=intervals)
+    temperature[:5] = 9.0
+    write_observables(path, temperature, velocity.mean(axis=1))
+
+
+def close(entry: dict[str, Any], expected: float) -> bool:
+    """Within four errors, and the error is below a tenth of the value."""
+    value, error = entry["value"], entry["error"]
+    return abs(value - expected) < 4 * error < 0.4 * abs(expected)
+
+
+def test_poiseuille(tmp_path):
+    poiseuille(tmp_path)
+    summary = analyzed(tmp_path)
+    assert summary["scene"] == "poiseuille"
+    assert summary["engine"] == "srd"
+    assert summary["simulated_time"] == pytest.approx(1000.0)
+    assert summary["sampled_time"] == pytest.approx(995.0)
+    assert summary["frames"] == 995
+    assert summary["wall_seconds"] is None
+    assert summary["fluid_particles"] == 4000
+    assert summary["colloids"] == 0
+    assert not summary["finished"]
+    assert close(summary["temperature"], 1.0)
+    assert close(summary["maximum_velocity"], 0.25)
+    assert close(summary["viscosity"], 0.01 * 100 / (8 * 0.25))
+    assert summary["viscosity"]["theory"] == 0.75
+    assert close(summary["viscosity_curvature"], 0.01 * 100 / (8 * 0.20))
+    assert close(summary["wall_slip"], 20.0)
+    mean = 0.05 + 0.2 * 2 / 3
+    assert close(summary["fluid_velocity"], mean)
+    assert close(summary["reynolds_number"], mean * 10 / summary["viscosity"]["theory"])
+    assert summary["figures"] == ["profile.png"]
+
+
+def test_flow_to_the_left_has_the_same_viscosity(tmp_path):
+    poiseuille(tmp_path, gravity=-0.01, v_max=-0.25, v_wall=-0.05)
+    summary = analyzed(tmp_path)
+    assert summary["viscosity"]["value"] == pytest.approx(0.5, rel=0.01)
+    assert summary["viscosity"]["error"] > 0
+
+
+@pytest.mark.parametrize(
+    ("gravity", "reason"), [(0.0, "no gravity"), (-0.01, "the fluid does not flow along gravity")]
+)
+def test_no_viscosity(tmp_path, gravity, reason):
+    poiseuille(tmp_path, gravity=gravity)
+    viscosity = analyzed(tmp_path)["viscosity"]
+    assert viscosity["value"] is None
+    assert viscosity["reason"] == reason
+    assert viscosity["theory"] is not None
+
+
+def test_short_run_has_values_without_errors(tmp_path):
+    poiseuille(tmp_path, intervals=10)
+    summary = analyzed(tmp_path)
+    assert summary["viscosity"]["error"] is None
+    assert summary["viscosity"]["reason"] == "5 samples are too few for an error"
+
+
+def test_fluid_without_theory(tmp_path):
+    poiseuille(tmp_path)
+    write_manifest(tmp_path, "poiseuille", POISEUILLE, viscosity_theory=None)
+    summary = analyzed(tmp_path)
+    assert summary["viscosity"]["theory"] is None
+    assert summary["reynolds_number"]["value"] is None
+    assert summary["reynolds_number"]["reason"].startswith("kinetic theory has no viscosity")
+
+
+def bulk(path, **fields):
+    y = half_cells(32.0)
+    rate = 0.6 * (2 * math.pi / 32) ** 2
+    times = np.arange(1, 201)
+    random = np.random.default_rng(2)
+    wave = 0.1 * np.exp(-rate * times)[:, None] * np.sin(2 * np.pi * y / 32)
+    wave[:5] *= 2  # in the equilibration
+    velocity = wave + 1e-4 * random.normal(size=wave.shape)
+    write_manifest(path, "bulk", BULK | fields, fluid_looks=1)
+    write_profile(path, y, np.full_like(velocity, 160.0), velocity)
+    write_observables(path, np.ones(200), np.zeros(200))
+
+
+def test_shear_wave(tmp_path):
+    bulk(tmp_path)
+    summary = analyzed(tmp_path)
+    assert summary["viscosity"]["value"] == pytest.approx(0.6, rel=0.01)
+    assert summary["viscosity"]["theory"] == 0.75
+    assert "reynolds_number" not in summary
+    assert summary["figures"] == ["shear_wave.png"]
+
+
+def test_fluid_at_rest_has_no_viscosity(tmp_path):
+    bulk(tmp_path, shear_wave=0.0)
+    summary = analyzed(tmp_path)
+    assert "viscosity" not in summary
+    assert summary["figures"] == []
+    assert summary["temperature"] == {"value": 1.0, "error": 0.0}
+
+
+def channel(path, frames=601, colloids=7, mass=100.0):
+    """Random walkers with a drift of 0.03 in a fluid whose whole moves at 0.01; a zigzag of 0.2."""
+    random = np.random.default_rng(3)
+    times = np.arange(frames)[:, None]
+    start = 5.0 * (np.arange(colloids) + 0.5)
+    start[-1] += 2.0
+    x = start + 0.03 * times + np.cumsum(0.02 * random.normal(size=(frames, colloids)), axis=0)
+    x[5:] += 3.0  # a jump within the equilibration does not count
+    y = 5 + 0.2 * (-1.0) ** np.arange(colloids) + 0.01 * random.normal(size=(frames, colloids))
+    velocities = [0.03, 0.0] + random.normal(size=(frames, colloids, 2)) / math.sqrt(mass)
+    mean_velocity = 0.01 + 0.001 * random.normal(size=frames - 1)
+    write_channel(path, np.stack([x, y], axis=2), velocities, mean_velocity, total_steps=6000)
+
+
+def test_channel(tmp_path):
+    channel(tmp_path)
+    summary = analyzed(tmp_path)
+    assert summary["finished"]
+    assert summary["frames"] == 595
+    assert close(summary["settling_speed_rest"], 0.03)
+    assert close(summary["settling_speed"], 0.02)
+    assert close(summary["colloid_temperature"], 1.0)
+    diffusion = summary["diffusion"]
+    assert abs(diffusion["value"] - 0.02**2 / 2) < 4 * diffusion["error"]
+    assert not diffusion["subdiffusive"]
+    zigzag = summary["zigzag"]
+    assert zigzag["amplitude_rms"]["value"] == pytest.approx(0.2, rel=0.01)
+    assert zigzag["amplitude_rms"]["error"] == pytest.approx(0.01 / math.sqrt(7 * 595), rel=0.4)
+    assert zigzag["displacement_rms"] == pytest.approx(0.2, rel=0.01)
+    assert zigzag["uncorrelated_rms"] == pytest.approx(0.2 / math.sqrt(7), rel=0.01)
+    assert zigzag["local_rms"] == pytest.approx([0.2] * 5, rel=0.01)
+    spacings = summary["spacings"]
+    # each walks by 0.02 sqrt(2 * 600) = 0.7 at most against its neighbour, head first
+    assert spacings["neighbours"] == pytest.approx([7.0, 5.0, 5.0, 5.0, 5.0, 5.0], abs=1.9)
+    assert spacings["neighbours"][0] == max(spacings["neighbours"])
+    assert len(spacings["groups"]) == 1
+    assert spacings["groups_initial"] == pytest.approx([(7.0 + 4 * 5.0) / 5], abs=0.05)
+    assert spacings["left_out_at_tail"] == 1
+    assert summary["pair_correlation"]["bin_width"] == pytest.approx(0.1)
+    assert summary["figures"] == [
+        "diffusion.png",
+        "pair_correlation.png",
+        "profile.png",
+        "settling_speed.png",
+        "space_time.png",
+        "spacings.png",
+        "zigzag.png",
+    ]
+
+
+def test_single_colloid_has_no_chain(tmp_path):
+    channel(tmp_path, frames=101, colloids=1)
+    summary = analyzed(tmp_path)
+    assert not {"spacings", "zigzag", "pair_correlation"} & summary.keys()
+    assert summary["diffusion"] == {
+        "value": None,
+        "error": None,
+        "reason": "96 frames; at least 320 are needed",
+    }
+    assert close(summary["settling_speed"], 0.02)
+    assert summary["figures"] == ["profile.png", "settling_speed.png", "space_time.png"]
+
+
+def test_two_colloids_have_a_spacing_and_no_zigzag(tmp_path):
+    channel(tmp_path, frames=101, colloids=2)
+    summary = analyzed(tmp_path)
+    assert summary["spacings"]["groups"] == []
+    assert len(summary["spacings"]["neighbours"]) == 1
+    assert "zigzag" not in summary
+
+
+def test_run_in_progress_uses_what_both_files_hold(tmp_path):
+    channel(tmp_path)
+    file = tmp_path / "observables.dat"
+    file.write_text("".join(file.read_text().splitlines(keepends=True)[:302]))
+    summary = analyzed(tmp_path)
+    assert not summary["finished"]
+    assert summary["simulated_time"] == pytest.approx(300.0)
+    assert close(summary["settling_speed"], 0.02)
+
+
+def test_analysis_can_be_repeated(tmp_path):
+    channel(tmp_path, frames=101)
+    assert analyze(tmp_path) == analyze(tmp_path)
+
+
+def test_nothing_after_the_equilibration(tmp_path):
+    poiseuille(tmp_path, intervals=5)
+    with pytest.raises(RunDirectoryError) as error:
+        analyze(tmp_path)
+    assert str(error.value) == (
+        f"{tmp_path}: no frames after the equilibration: it ends at step 50, the output at step 50"
+    )
+    assert not (tmp_path / "summary.json").exists()
+
+
+def test_trajectory_ends_in_the_equilibration(tmp_path):
+    channel(tmp_path, frames=101)
+    file = tmp_path / "trajectory.lammpsdump"
+    file.write_text("".join(file.read_text().splitlines(keepends=True)[: 6 * (9 + 7)]))
+    with pytest.raises(RunDirectoryError) as error:
+        analyze(tmp_path)
+    assert str(error.value) == (
+        f"{file}: no two frames after the equilibration: it ends at step 50, the trajectory at "
+        "step 50"
+    )
+
+
+def test_manifest_without_the_mass_of_a_colloid(tmp_path):
+    channel(tmp_path, frames=101)
+    write_manifest(tmp_path, "channel", CHANNEL, colloids=7, colloid_mass=None)
+    with pytest.raises(RunDirectoryError, match="colloid_mass must be positive"):
+        analyze(tmp_path)
+
+
+def test_slit_with_too_few_bins_for_a_parabola(tmp_path):
+    poiseuille(tmp_path, intervals=20)
+    y = np.array([2.5, 7.5])
+    write_profile(tmp_path, y, np.ones((20, 2)), np.ones((20, 2)))
+    with pytest.raises(RunDirectoryError, match=r"fluid_profile.dat: fewer than 3 bins hold fluid"):
+        analyze(tmp_path)
