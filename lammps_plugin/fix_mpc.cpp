@@ -37,9 +37,9 @@ struct RestartHeader {
 }    // namespace
 
 template <int D>
-FixMPC<D>::FixMPC(LAMMPS *lmp, int narg, char **arg) : Fix(lmp, narg, arg), processes_(*comm, world)
+FixMPC<D>::FixMPC(LAMMPS *lmp, int narg, char **arg) :
+    Fix(lmp, narg, arg), given_(lmp, narg, arg), processes_(*comm, world)
 {
-  if (narg < 8) utils::missing_cmd_args(FLERR, "fix mpc", error);
   if (std::string(update->unit_style) != "lj")
     error->all(FLERR, "fix mpc: units {}: must be lj", update->unit_style);
   if (domain->triclinic) error->all(FLERR, "fix mpc: the box must not be triclinic");
@@ -47,18 +47,18 @@ FixMPC<D>::FixMPC(LAMMPS *lmp, int narg, char **arg) : Fix(lmp, narg, arg), proc
     error->all(FLERR, "fix mpc: boundary: must be p in x and z; y may be f, for walls");
   if (!domain->yperiodic && (domain->boundary[1][0] != 1 || domain->boundary[1][1] != 1))
     error->all(FLERR, "fix mpc: boundary: y must be p or f");
-  parse(narg, arg);
 
   restart_global = 1;
-  nevery = every_;
+  nevery = given_.every;
   time_integrate = 1;
   scalar_flag = vector_flag = array_flag = 1;
-  global_freq = every_;
+  global_freq = given_.every;
   size_vector = 5;
-  size_array_rows = bins_;
+  size_array_rows = given_.bins;
   size_array_cols = 5;
   extscalar = extvector = extarray = 0;
   dynamic_group_allow = 0;
+  open_profile();
 }
 
 template <int D> FixMPC<D>::~FixMPC()
@@ -66,124 +66,17 @@ template <int D> FixMPC<D>::~FixMPC()
   if (profile_file_) std::fclose(profile_file_);
 }
 
-template <int D> void FixMPC<D>::parse(int narg, char **arg)
+template <int D> void FixMPC<D>::open_profile()
 {
-  const auto number = [&](int i, const char *name, bool valid_sign(double), const char *must) {
-    const double value = utils::numeric(FLERR, arg[i], false, lmp);
-    if (!valid_sign(value) || !std::isfinite(value))
-      error->all(FLERR, "fix mpc: {} {}: must be {}", name, arg[i], must);
-    return value;
-  };
-  const auto positive = [](double value) { return value > 0; };
-  const auto not_negative = [](double value) { return value >= 0; };
-  const auto finite = [](double) { return true; };
-  const auto choice = [&](int i, const char *name, const std::vector<std::string> &choices) {
-    for (const auto &each : choices)
-      if (each == arg[i]) return each;
-    std::string list;
-    for (const auto &each : choices) list += (list.empty() ? "" : ", ") + each;
-    error->all(FLERR, "fix mpc: {} {}: must be one of {}", name, arg[i], list);
-  };
-
-  every_ = utils::inumeric(FLERR, arg[3], false, lmp);
-  if (every_ < 1) error->all(FLERR, "fix mpc: N {}: must be positive", arg[3]);
-  colloid_bit_ = 0;
-  if (std::string(arg[4]) != "NULL")
-    colloid_bit_ = group->get_bitmask_by_id(FLERR, arg[4], "fix mpc");
-  temperature_ = number(5, "temperature", positive, "positive");
-  edge_ = number(6, "hgrid", positive, "positive");
-  const auto seed = utils::bnumeric(FLERR, arg[7], false, lmp);
-  if (seed < 1) error->all(FLERR, "fix mpc: seed {}: must be positive", arg[7]);
-  seed_ = static_cast<std::uint64_t>(seed);
-  for (int a = 0; a < D; ++a) {
-    const double rows = domain->prd[a] / edge_;
-    if (domain->periodicity[a] && std::abs(rows - std::round(rows)) > 1e-9 * rows)
-      error->all(FLERR, "fix mpc: hgrid {}: the periodic length {} of {} is not a multiple of it",
-                 edge_, domain->prd[a], "xyz"[a]);
-    if (rows < 2 - 1e-9)
-      error->all(FLERR, "fix mpc: hgrid {}: less than 2 cells along {}", edge_, "xyz"[a]);
-  }
-
-  int i = 8;
-  const auto values = [&](int count) {
-    if (i + count >= narg)
-      error->all(FLERR, "fix mpc: {}: needs {} value(s)", arg[i], count);
-    i += count + 1;
-    return i - count;
-  };
-  while (i < narg) {
-    const std::string keyword = arg[i];
-    if (keyword == "create") {
-      particles_ = number(values(1), "create", positive, "positive");
-    } else if (keyword == "load") {
-      load_file_ = arg[values(1)];
-    } else if (keyword == "density") {
-      density_ = number(values(1), "density", positive, "positive");
-    } else if (keyword == "angle") {
-      angle_ = number(values(1), "angle", positive, "positive");
-    } else if (keyword == "axis") {
-      axes_ = choice(values(1), "axis", {"random", "coordinate"}) == "random"
-          ? mpc::Axes::Random
-          : mpc::Axes::Coordinate;
-    } else if (keyword == "shift") {
-      shifted_ = choice(values(1), "shift", {"yes", "no"}) == "yes";
-    } else if (keyword == "tstat") {
-      tstat_ = choice(values(1), "tstat", {"none", "layer", "monte_carlo", "rescale", "andersen"});
-    } else if (keyword == "hydro") {
-      hydro_ = choice(values(1), "hydro", {"on", "shuffle", "bath"});
-    } else if (keyword == "field") {
-      const int first = values(3);
-      for (int a = 0; a < D; ++a) field_[a] = number(first + a, "field", finite, "finite");
-    } else if (keyword == "force") {
-      const int first = values(3);
-      const int type = utils::inumeric(FLERR, arg[first], false, lmp);
-      if (type < 1 || type > atom->ntypes)
-        error->all(FLERR, "fix mpc: force {}: no such atom type", arg[first]);
-      interactions_[type] = {number(first + 1, "force epsilon", not_negative, "not negative"),
-                             number(first + 2, "force sigma", positive, "positive")};
-    } else if (keyword == "bins") {
-      bins_ = utils::inumeric(FLERR, arg[values(1)], false, lmp);
-      if (bins_ < 1) error->all(FLERR, "fix mpc: bins {}: must be positive", arg[i - 1]);
-    } else if (keyword == "profile") {
-      const int first = values(4);
-      profile_every_ = utils::inumeric(FLERR, arg[first], false, lmp);
-      profile_frequency_ = utils::inumeric(FLERR, arg[first + 1], false, lmp);
-      if (profile_every_ < 1 || profile_every_ % every_)
-        error->all(FLERR, "fix mpc: profile Nevery {}: must be a multiple of N", arg[first]);
-      if (profile_frequency_ < 1 || profile_frequency_ % profile_every_)
-        error->all(FLERR, "fix mpc: profile Nfreq {}: must be a multiple of Nevery",
-                   arg[first + 1]);
-      const bool append =
-          choice(first + 2, "profile mode", {"file", "append"}) == "append";
-      if (comm->me == 0) {
-        profile_file_ = std::fopen(arg[first + 3], append ? "a" : "w");
-        if (!profile_file_)
-          error->one(FLERR, "fix mpc: profile: cannot write {}", arg[first + 3]);
-        if (!append)
-          std::fprintf(profile_file_,
-                       "# Chunk-averaged data for fix %s and group fluid\n"
-                       "# Timestep Number-of-chunks Total-count\n"
-                       "# Chunk Coord1 Ncount density/number vx temp\n",
-                       id);
-      }
-    } else {
-      error->all(FLERR, "fix mpc: unknown keyword {}", keyword);
-    }
-  }
-
-  if (bins_ == 0) bins_ = std::max(1, static_cast<int>(std::lround(2 * domain->prd[1] / edge_)));
-  if ((particles_ > 0) == !load_file_.empty())
-    error->all(FLERR, "fix mpc: one of create and load must be given");
-  if (particles_ != std::round(particles_) || particles_ > UINT32_MAX)
-    error->all(FLERR, "fix mpc: create {}: must be a whole number below 2^32", particles_);
-  if (!domain->yperiodic && density_ == 0)
-    error->all(FLERR, "fix mpc: density: needed for the virtual particles of the walls");
-  if (D == 3 && axes_ == mpc::Axes::Coordinate && angle_ != 90)
-    error->all(FLERR, "fix mpc: angle {}: about coordinate axes it must be 90; else use axis random",
-               angle_);
-  if (angle_ > 180) error->all(FLERR, "fix mpc: angle {}: must be at most 180", angle_);
-  if (!interactions_.empty() && !colloid_bit_)
-    error->all(FLERR, "fix mpc: force: there is no colloid group");
+  if (given_.profile_file.empty() || comm->me != 0) return;
+  profile_file_ = std::fopen(given_.profile_file.c_str(), given_.profile_append ? "a" : "w");
+  if (!profile_file_) error->one(FLERR, "fix mpc: profile: cannot write {}", given_.profile_file);
+  if (!given_.profile_append)
+    std::fprintf(profile_file_,
+                 "# Chunk-averaged data for fix %s and group fluid\n"
+                 "# Timestep Number-of-chunks Total-count\n"
+                 "# Chunk Coord1 Ncount density/number vx temp\n",
+                 id);
 }
 
 template <int D> int FixMPC<D>::setmask()
@@ -195,21 +88,21 @@ template <int D> void FixMPC<D>::init()
 {
   if (comm->style != Comm::BRICK || comm->layout == Comm::LAYOUT_TILED)
     error->all(FLERR, "fix mpc: comm_style tiled is not supported");
-  if (!interactions_.empty() && !force->newton_pair)
+  if (!given_.interactions.empty() && !force->newton_pair)
     error->all(FLERR, "fix mpc: newton: must be on, forces on ghost colloids are to be summed");
   if (domain->box_change_size || domain->box_change_shape)
     error->all(FLERR, "fix mpc: the box must not change");
   if (!solver_) {
     make_solver();
-    if (load_file_.empty())
+    if (given_.load_file.empty())
       create_fluid();
     else
       load_fluid();
   }
-  if (update->dt * every_ != interval_)
+  if (update->dt * given_.every != interval_)
     error->all(FLERR, "fix mpc: timestep: must not change");
-  if (!open_ && update->ntimestep % every_)
-    error->all(FLERR, "fix mpc: N {}: the first step {} must be a multiple of it", every_,
+  if (!open_ && update->ntimestep % given_.every)
+    error->all(FLERR, "fix mpc: N {}: the first step {} must be a multiple of it", given_.every,
                update->ntimestep);
 }
 
@@ -221,28 +114,28 @@ template <int D> void FixMPC<D>::make_solver()
     box[a] = domain->prd[a];
     periodic[a] = domain->periodicity[a];
   }
-  const mpc::Grid<D> grid(box, periodic, edge_);
-  interval_ = update->dt * every_;
+  const mpc::Grid<D> grid(box, periodic, given_.edge);
+  interval_ = update->dt * given_.every;
 
   const double width = domain->yperiodic ? mpc::NO_WALLS : domain->yprd;
-  const mpc::Rotation rotation(angle_ * M_PI / 180, axes_);
-  mpc::Method<D> method{seed_, interval_, temperature_, density_, field_,
-                        width, rotation,  shifted_,     {},       {},     {}};
-  if (tstat_ == "layer")
-    method.thermostat = std::make_unique<mpc::LayerThermostat<D>>(temperature_);
-  else if (tstat_ == "monte_carlo")
-    method.thermostat = std::make_unique<mpc::MonteCarloThermostat<D>>(temperature_);
-  else if (tstat_ == "rescale")
-    method.thermostat = std::make_unique<mpc::RescalingThermostat<D>>(temperature_);
-  else if (tstat_ == "andersen")
-    method.thermostat = std::make_unique<mpc::AndersenThermostat<D>>(temperature_, interval_);
-  if (hydro_ == "shuffle")
+  const mpc::Rotation rotation(given_.angle * M_PI / 180, given_.axes);
+  mpc::Method<D> method{given_.seed, interval_, given_.temperature, given_.density, given_.field,
+                        width, rotation,  given_.shifted,     {},       {},     {}};
+  if (given_.tstat == "layer")
+    method.thermostat = std::make_unique<mpc::LayerThermostat<D>>(given_.temperature);
+  else if (given_.tstat == "monte_carlo")
+    method.thermostat = std::make_unique<mpc::MonteCarloThermostat<D>>(given_.temperature);
+  else if (given_.tstat == "rescale")
+    method.thermostat = std::make_unique<mpc::RescalingThermostat<D>>(given_.temperature);
+  else if (given_.tstat == "andersen")
+    method.thermostat = std::make_unique<mpc::AndersenThermostat<D>>(given_.temperature, interval_);
+  if (given_.hydro == "shuffle")
     method.random_solvent = std::make_unique<mpc::ShuffledSolvent<D>>();
-  else if (hydro_ == "bath")
-    method.random_solvent = std::make_unique<mpc::BathSolvent<D>>(temperature_);
-  if (!interactions_.empty())
+  else if (given_.hydro == "bath")
+    method.random_solvent = std::make_unique<mpc::BathSolvent<D>>(given_.temperature);
+  if (!given_.interactions.empty())
     method.coupling =
-        std::make_unique<mpc::ForceCoupling<D>>(interval_, temperature_, field_, width);
+        std::make_unique<mpc::ForceCoupling<D>>(interval_, given_.temperature, given_.field, width);
   solver_ = std::make_unique<mpc::Solver<D>>(grid, std::move(method), processes_);
 }
 
@@ -251,7 +144,7 @@ template <int D> std::array<int, D> FixMPC<D>::bound(const double *corner) const
 {
   std::array<int, D> cells;
   for (int a = 0; a < D; ++a)
-    cells[a] = static_cast<int>(std::floor((corner[a] - domain->boxlo[a]) / edge_ + 0.5));
+    cells[a] = static_cast<int>(std::floor((corner[a] - domain->boxlo[a]) / given_.edge + 0.5));
   return cells;
 }
 
@@ -276,8 +169,8 @@ template <int D> void FixMPC<D>::create_fluid()
   solver_->reset(0, lower(), upper());
   std::vector<Colloid<D>> mine;
   for (int i = 0; i < atom->nlocal; ++i) {
-    const auto interaction = interactions_.find(atom->type[i]);
-    if (!(atom->mask[i] & colloid_bit_) || interaction == interactions_.end()) continue;
+    const auto interaction = given_.interactions.find(atom->type[i]);
+    if (!(atom->mask[i] & given_.colloid_bit) || interaction == given_.interactions.end()) continue;
     mine.push_back({static_cast<double>(atom->tag[i]), {}, 0, interaction->second.sigma});
     for (int a = 0; a < D; ++a) mine.back().x[a] = atom->x[i][a] - domain->boxlo[a];
   }
@@ -295,19 +188,19 @@ template <int D> void FixMPC<D>::create_fluid()
     }
     return false;
   };
-  const mpc::CounterRandom random{seed_, 0};
-  for (double number = 0; number < particles_; ++number) {
+  const mpc::CounterRandom random{given_.seed, 0};
+  for (double number = 0; number < given_.particles; ++number) {
     const auto item = static_cast<std::uint64_t>(number);
     Particle<D> particle{number, {}, {}};
     std::uint64_t trial = 0;
     do {
       if (++trial > MOST_TRIALS)
-        error->all(FLERR, "fix mpc: create {}: the colloids leave no room", particles_);
+        error->all(FLERR, "fix mpc: create {}: the colloids leave no room", given_.particles);
       const auto u = mpc::uniforms(random.words(mpc::Stream::Create, item, trial));
       for (int a = 0; a < D; ++a) particle.x[a] = u[a] * domain->prd[a];
     } while (overlaps(particle.x));
     const auto z = mpc::normals<D>(random.words(mpc::Stream::Create, item));
-    for (int a = 0; a < D; ++a) particle.v[a] = std::sqrt(temperature_) * z[a];
+    for (int a = 0; a < D; ++a) particle.v[a] = std::sqrt(given_.temperature) * z[a];
     solver_->add(particle);
   }
   solver_->count();
@@ -316,17 +209,17 @@ template <int D> void FixMPC<D>::create_fluid()
 
 template <int D> void FixMPC<D>::load_fluid()
 {
-  FILE *file = std::fopen(load_file_.c_str(), "rb");
-  if (!file) error->one(FLERR, "fix mpc: load: cannot read {}", load_file_);
+  FILE *file = std::fopen(given_.load_file.c_str(), "rb");
+  if (!file) error->one(FLERR, "fix mpc: load: cannot read {}", given_.load_file);
   mpc::FluidHeader header;
   if (std::fread(&header, sizeof header, 1, file) != 1 ||
       std::memcmp(header.magic, MAGIC, sizeof MAGIC) || header.dimension != D)
-    error->one(FLERR, "fix mpc: load: {} is not a fluid in {} dimensions", load_file_, D);
+    error->one(FLERR, "fix mpc: load: {} is not a fluid in {} dimensions", given_.load_file, D);
   solver_->reset(header.collisions, lower(), upper());
   Particle<D> particle;
   for (std::int64_t n = 0; n < header.particles; ++n) {
     if (std::fread(&particle, sizeof particle, 1, file) != 1)
-      error->one(FLERR, "fix mpc: load: {} ends before its {} particles", load_file_,
+      error->one(FLERR, "fix mpc: load: {} ends before its {} particles", given_.load_file,
                  header.particles);
     for (int a = 0; a < D; ++a) particle.x[a] -= domain->boxlo[a];
     solver_->add(particle);
@@ -334,7 +227,7 @@ template <int D> void FixMPC<D>::load_fluid()
   std::fclose(file);
   solver_->count();
   if (solver_->particles() != static_cast<double>(header.particles))
-    error->all(FLERR, "fix mpc: load: {} has particles outside the box", load_file_);
+    error->all(FLERR, "fix mpc: load: {} has particles outside the box", given_.load_file);
 }
 
 // Records of all processes on all, process by process; for the few that colloids are.
@@ -412,7 +305,7 @@ template <int D> int FixMPC<D>::modify_param(int narg, char **arg)
   if (std::string(arg[0]) != "save") return 0;
   if (narg < 2) error->all(FLERR, "fix_modify save: needs a file name");
   if (!solver_ || open_)
-    error->all(FLERR, "fix_modify save: the step must be a multiple of N = {}", every_);
+    error->all(FLERR, "fix_modify save: the step must be a multiple of N = {}", given_.every);
   save_fluid(arg[1]);
   return 2;
 }
@@ -423,7 +316,7 @@ template <int D> void FixMPC<D>::write_restart(FILE *file)
 {
   if (!solver_ || open_)
     error->all(FLERR, "fix mpc: restart: the step {} must be a multiple of N = {}",
-               update->ntimestep, every_);
+               update->ntimestep, given_.every);
   const auto pulls = everyones(pulls_);
   const double bytes = sizeof(RestartHeader) + pulls.size() * sizeof(Pull) +
       solver_->particles() * sizeof(Particle<D>);
@@ -475,8 +368,8 @@ template <int D> void FixMPC<D>::snapshot()
   double bounds[2] = {0, 0};    // speed squared, and inverse mass
   double sigma = 0;
   for (int i = 0; i < atom->nlocal + atom->nghost; ++i) {
-    const auto interaction = interactions_.find(atom->type[i]);
-    if (!(atom->mask[i] & colloid_bit_) || interaction == interactions_.end()) continue;
+    const auto interaction = given_.interactions.find(atom->type[i]);
+    if (!(atom->mask[i] & given_.colloid_bit) || interaction == given_.interactions.end()) continue;
     slots_.push_back({static_cast<double>(atom->tag[i]), {}, interaction->second.epsilon,
                       interaction->second.sigma});
     atoms_.push_back(i);
@@ -491,12 +384,12 @@ template <int D> void FixMPC<D>::snapshot()
   read_colloids();
   forces_.resize(slots_.size());
   if (comm->nprocs > 1) MPI_Allreduce(MPI_IN_PLACE, bounds, 2, MPI_DOUBLE, MPI_MAX, world);
-  colloid_speed_ = std::sqrt(bounds[0]) + SPEED_MARGIN * std::sqrt(temperature_ * bounds[1]);
+  colloid_speed_ = std::sqrt(bounds[0]) + SPEED_MARGIN * std::sqrt(given_.temperature * bounds[1]);
 
   // cells reach beyond the sub-domain by the shift and half a cell, and colloids move
   if (slots_.empty()) return;
   const double needed =
-      1.5 * edge_ + solver_->coupling()->reach(sigma) + 3 * interval_ * colloid_speed_;
+      1.5 * given_.edge + solver_->coupling()->reach(sigma) + 3 * interval_ * colloid_speed_;
   for (int a = 0; a < D; ++a)
     if (comm->cutghost[a] < needed && domain->periodicity[a])
       error->one(FLERR, "fix mpc: the ghost cutoff {:.4g} is too short for the fluid to see all "
@@ -536,7 +429,7 @@ template <int D> void FixMPC<D>::add_forces()
 {
   if (neighbor->ago == 0)    // atoms were exchanged; a colloid moves much less than its images
     for (std::size_t s = 0; s < slots_.size(); ++s)
-      atoms_[s] = atom_at(slots_[s].id, slots_[s].x, edge_);
+      atoms_[s] = atom_at(slots_[s].id, slots_[s].x, given_.edge);
   read_colloids();
   guarded([&] { solver_->coupling()->forces(slots_, forces_); });
   for (std::size_t s = 0; s < slots_.size(); ++s)
@@ -566,7 +459,7 @@ template <int D> void FixMPC<D>::remember_pulls()
 template <int D> bool FixMPC<D>::repeat_pulls()
 {
   std::vector<int> atoms;
-  for (const auto &pull : pulls_) atoms.push_back(atom_at(pull.id, pull.x, 1e-9 * edge_));
+  for (const auto &pull : pulls_) atoms.push_back(atom_at(pull.id, pull.x, 1e-9 * given_.edge));
   const bool moved = std::count(atoms.begin(), atoms.end(), -1) > 0;
   double known = static_cast<double>(pulls_.size());
   processes_.sum(&known, 1);
@@ -578,7 +471,7 @@ template <int D> bool FixMPC<D>::repeat_pulls()
 
 template <int D> void FixMPC<D>::setup_pre_reverse(int, int)
 {
-  if (interactions_.empty()) return;
+  if (given_.interactions.empty()) return;
   if (!open_) {
     snapshot();
     if (repeat_pulls()) return;
@@ -594,28 +487,28 @@ template <int D> void FixMPC<D>::initial_integrate(int)
     guarded([&] { solver_->begin_interval(slots_, colloid_speed_); });
     open_ = true;
   }
-  if (!interactions_.empty()) guarded([&] { solver_->coupling()->drift(update->dt); });
+  if (!given_.interactions.empty()) guarded([&] { solver_->coupling()->drift(update->dt); });
 }
 
 template <int D> void FixMPC<D>::pre_reverse(int, int)
 {
-  if (!interactions_.empty()) add_forces();
+  if (!given_.interactions.empty()) add_forces();
 }
 
 template <int D> void FixMPC<D>::final_integrate()
 {
-  if (!interactions_.empty()) solver_->coupling()->kick(update->dt);
+  if (!given_.interactions.empty()) solver_->coupling()->kick(update->dt);
 }
 
 template <int D> void FixMPC<D>::end_of_step()
 {
   guarded([&] { solver_->end_interval(); });
   open_ = false;
-  if (!interactions_.empty()) {
+  if (!given_.interactions.empty()) {
     remember_pulls();
     snapshot();
   }
-  if (profile_every_ && update->ntimestep % profile_every_ == 0) write_profile();
+  if (given_.profile_every && update->ntimestep % given_.profile_every == 0) write_profile();
 }
 
 // Layers of the fluid as it is now.
@@ -623,7 +516,7 @@ template <int D> const std::vector<mpc::Layer> &FixMPC<D>::profile()
 {
   if (layers_step_ != update->ntimestep) {
     solver_->turn();
-    layers_ = mpc::layers<D>(solver_->fluid(), solver_->grid(), bins_, processes_);
+    layers_ = mpc::layers<D>(solver_->fluid(), solver_->grid(), given_.bins, processes_);
     layers_step_ = update->ntimestep;
   }
   return layers_;
@@ -632,22 +525,22 @@ template <int D> const std::vector<mpc::Layer> &FixMPC<D>::profile()
 // The file of fix ave/chunk with a chunk/atom bin/1d y: averaged over the looks of Nfreq steps.
 template <int D> void FixMPC<D>::write_profile()
 {
-  averaged_.resize(bins_);
+  averaged_.resize(given_.bins);
   const auto &now = profile();
-  for (int bin = 0; bin < bins_; ++bin) {
+  for (int bin = 0; bin < given_.bins; ++bin) {
     averaged_[bin].count += now[bin].count;
     averaged_[bin].momentum_x += now[bin].momentum_x;
     averaged_[bin].squares += now[bin].squares;
   }
   ++looks_;
-  if (update->ntimestep % profile_frequency_) return;
+  if (update->ntimestep % given_.profile_frequency) return;
 
   if (comm->me == 0) {
-    const double depth = domain->yprd / bins_;
+    const double depth = domain->yprd / given_.bins;
     const double volume = depth * domain->xprd * (D == 3 ? domain->zprd : 1);
-    std::fprintf(profile_file_, BIGINT_FORMAT " %d %g\n", update->ntimestep, bins_,
+    std::fprintf(profile_file_, BIGINT_FORMAT " %d %g\n", update->ntimestep, given_.bins,
                  solver_->particles());
-    for (int bin = 0; bin < bins_; ++bin) {
+    for (int bin = 0; bin < given_.bins; ++bin) {
       const auto &layer = averaged_[bin];
       const double occupied = std::max(layer.count, 1.0);
       std::fprintf(profile_file_, "  %d %g %g %g %.6g %.6g\n", bin + 1,
@@ -677,7 +570,7 @@ template <int D> double FixMPC<D>::compute_vector(int index)
 template <int D> double FixMPC<D>::compute_array(int row, int column)
 {
   const auto &layer = profile()[row];
-  const double depth = domain->yprd / bins_;
+  const double depth = domain->yprd / given_.bins;
   const double occupied = std::max(layer.count, 1.0);
   switch (column) {
     case 0: return domain->boxlo[1] + depth * (row + 0.5);

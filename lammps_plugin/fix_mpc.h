@@ -7,9 +7,9 @@
 
 #include "core/profile.h"
 #include "core/solver.h"
+#include "mpc_arguments.h"
 #include "mpi_processes.h"
 
-#include <map>
 #include <memory>
 #include <string>
 #include <vector>
@@ -37,17 +37,13 @@ template <int D> class FixMPC : public Fix {
   void restart(char *) override;
 
  private:
-  struct Interaction {
-    double epsilon, sigma;
-  };
-
   // What this process's fluid did to a colloid or image at the last collision step.
   struct Pull {
     double process, id;
     mpc::Vector<D> x, force;
   };
 
-  void parse(int, char **);
+  void open_profile();
   void make_solver();
   void create_fluid();
   void load_fluid();
@@ -70,21 +66,7 @@ template <int D> class FixMPC : public Fix {
   template <class Visit> void gather(const Visit &);
   template <class T> std::vector<T> everyones(const std::vector<T> &) const;
 
-  // arguments
-  int every_, colloid_bit_;
-  double temperature_, edge_;
-  std::uint64_t seed_;
-  double particles_ = 0;
-  std::string load_file_;
-  double density_ = 0;
-  double angle_ = 90;
-  mpc::Axes axes_ = mpc::Axes::Coordinate;
-  bool shifted_ = true;
-  std::string tstat_ = "none", hydro_ = "on";
-  mpc::Vector<D> field_{};
-  std::map<int, Interaction> interactions_;    // by atom type
-  int bins_ = 0;
-  int profile_every_ = 0, profile_frequency_ = 0;
+  const MpcArguments<D> given_;
   FILE *profile_file_ = nullptr;
 
   MpiProcesses processes_;
