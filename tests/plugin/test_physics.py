@@ -284,3 +284,17 @@ def test_settling_speed_is_linear_in_gravity(tmp_path: Path) -> None:
     assert slope == pytest.approx(0.34, abs=0.02)
     assert speeds == pytest.approx(slope * gravities, abs=4 * 0.0009)  # error of one speed
     assert settling_speed(gravity=0.1, hydrodynamics="bath") == pytest.approx(0, abs=0.004)
+
+
+def test_units_scale(lammps: Any) -> None:
+    """Half the cell and a quarter of the temperature: the same motion in a box of half the size."""
+    states = []
+    for size, temperature, hgrid in ((8, 1.0, 1.0), (4, 0.25, 0.5)):
+        lammps.command("clear")
+        lammps.commands_string(
+            box(size=size) + f"timestep 0.1\nfix fluid all mpc 1 NULL {temperature} {hgrid} 7 "
+            "create 640 tstat monte_carlo\nrun 20"
+        )
+        states.append(saved(lammps))
+    for one, other in zip(*states, strict=True):
+        np.testing.assert_allclose(one, 2 * other, atol=1e-10)
