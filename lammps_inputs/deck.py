@@ -14,13 +14,13 @@ import numpy as np
 
 from lammps_inputs.bulk import Bulk
 from lammps_inputs.channel import Channel
-from lammps_inputs.initial_state import initial_state
+from lammps_inputs.initial_state import InitialState, initial_state
 from lammps_inputs.poiseuille import Poiseuille
 from lammps_inputs.scene import SceneError
 from lammps_inputs.viscosity import viscosity
 
 Scene = Channel | Poiseuille | Bulk
-Engine = Literal["srd", "reference"]
+Engine = Literal["srd", "mpc", "reference"]
 
 MAX_COLLISIONS_PER_LOOK = 10  # its velocities decorrelate in a few collisions
 SRD_SEED_STREAM = 90  # Philox key of the seeds handed to fix srd, one block per start
@@ -134,6 +134,11 @@ def write_deck(scene: Scene, directory: Path, engine: Engine = "srd") -> None:
     (directory / "manifest.json").write_text(
         json.dumps(manifest(scene, engine), indent=2) + "\n", encoding="utf-8"
     )
+    if engine == "mpc":
+        (directory / "in.lammps").write_text(script(scene, engine="mpc"), encoding="utf-8")
+        with (directory / "state.data").open("w", encoding="utf-8") as file:
+            file.writelines(_mpc_data(scene))
+        (directory / "state.fluid").write_bytes(fluid_file(initial_state(scene)))
     if engine == "srd":
         (directory / "in.lammps").write_text(script(scene), encoding="utf-8")
         with (directory / "state.data").open("w", encoding="utf-8") as file:
@@ -143,15 +148,89 @@ def write_deck(scene: Scene, directory: Path, engine: Engine = "srd") -> None:
             (directory / "wall.table").write_text(table, encoding="utf-8")
 
 
-def script(scene: Scene, start: Start | None = None) -> str:
+def script(scene: Scene, start: Start | None = None, engine: Engine = "srd") -> str:
     """The input script; its last command is the `run`."""
     start = start or Start()
-    parts = _channel(scene, start) if isinstance(scene, Channel) else _pure_fluid(scene, start)
+    if engine == "mpc":
+        parts = _mpc(scene, start)
+    else:
+        parts = _channel(scene, start) if isinstance(scene, Channel) else _pure_fluid(scene, start)
     return "\n".join(parts) + "\n"
 
 
-def _head(scene: Scene, start: Start, gravity: float | None) -> Iterator[str]:
-    seeds = srd_seeds(scene, start.step)
+def fluid_file(state: InitialState, collisions: int = 0) -> bytes:
+    """The fluid of a state as `fix mpc ... load` reads it (docs/fix_mpc.md)."""
+    count, dimensions = state.fluid_positions.shape
+    rows = np.column_stack([np.arange(count), state.fluid_positions, state.fluid_velocities])
+    header = np.array([dimensions, count, collisions], dtype="<i8")
+    return b"mpcfluid" + header.tobytes() + rows.astype("<f8").tobytes()
+
+
+def _mpc(scene: Scene, start: Start) -> Iterator[str]:
+    pulled = isinstance(scene, Channel) and scene.gravity
+    gravity = scene.gravity if isinstance(scene, Channel) else scene.fluid_gravity
+    yield from _head(scene, gravity, {"seed": scene.seed})
+    yield "atom_modify sort 0 0.0 # the order of the atoms decides the last bit of sums"
+    yield from _read(start)
+    if not start.checkpoint:
+        yield "group colloids type 1"
+    yield ""
+    if isinstance(scene, Channel):
+        yield "# 48-24 repulsion of the colloids"
+        yield f"pair_style mie/cut {scene.colloid_colloid.cutoff!r}"
+        yield scene.colloid_colloid.pair_coeff("1 1")
+        yield "pair_modify shift yes"
+        yield "neighbor 0.5 bin"
+        yield "neigh_modify delay 0 every 1 check yes"
+    else:
+        yield "pair_style none"
+        yield "comm_modify cutoff 1.0"
+    yield f"timestep {scene.time_step!r}"
+    if isinstance(scene, Channel):
+        yield "fix motion colloids nve"
+        if scene.wall_strength > 0:
+            yield scene.colloid_wall.wall_fix("wall", "colloids")
+    if pulled:
+        yield "fix gravity colloids gravity ${gravity} vector 1 0 0"
+    yield ""
+    yield "# the MPC solvent"
+    yield from _mpc_solvent(scene, start)
+    yield ""
+    yield "# output, averaged over each sampling interval; the solvent writes its own profile"
+    yield "variable fluid_temperature equal f_solvent"
+    if isinstance(scene, Channel):
+        momentum = "(f_solvent[1]+mass(colloids)*vcm(colloids,x))"
+        yield f"variable mean_velocity_x equal {momentum}/(f_solvent[4]+mass(colloids))"
+    else:
+        yield "variable mean_velocity_x equal f_solvent[1]/f_solvent[4]"
+    yield from _observables(scene, start)
+    if isinstance(scene, Channel):
+        yield from _trajectory(start)
+    yield from _run()
+
+
+def _mpc_solvent(scene: Scene, start: Start) -> Iterator[str]:
+    colloids = "colloids" if isinstance(scene, Channel) else "NULL"
+    looks = fluid_looks(scene)
+    options = ["load state.fluid", f"density {scene.density!r}", f"angle {scene.angle!r}"]
+    if isinstance(scene, Bulk) and scene.dimension == 3:
+        options.append(f"axis {scene.rotation.partition('_')[0].replace('axes', '')}")
+    options += [f"tstat {scene.thermostat}", f"hydro {scene.hydrodynamics}"]
+    if scene.fluid_gravity:
+        options.append("field ${gravity} 0 0")
+    if isinstance(scene, Channel):
+        potential = scene.colloid_fluid
+        options.append(f"force 1 {potential.epsilon!r} {potential.sigma!r}")
+    mode = "append" if start.checkpoint else "file"
+    options.append(f"bins {2 * round(scene.width)}")
+    options.append(f"profile {sample_steps(scene) // looks} ${{sample}} {mode} fluid_profile.dat")
+    yield (
+        f"fix solvent all mpc {scene.steps_per_collision} {colloids} 1.0 1.0 ${{seed}} "
+        + " ".join(options)
+    )
+
+
+def _head(scene: Scene, gravity: float | None, seeds: dict[str, int]) -> Iterator[str]:
     about = (type(scene).__doc__ or "").partition("\n")[0]
     yield f"# {scene.name}: {about}"
     yield "# run:     lmp -in in.lammps      or   mpirun -np 2 lmp -in in.lammps"
@@ -163,8 +242,8 @@ def _head(scene: Scene, start: Start, gravity: float | None) -> Iterator[str]:
         yield f"variable gravity index {gravity!r} # acceleration of the {what} along x"
     yield f"variable steps index {total_steps(scene)} # of time {scene.time_step:.6g}"
     yield f"variable sample index {sample_steps(scene)} # steps between two outputs"
-    yield f"variable seed_collision index {seeds['seed_collision']}"
-    yield f"variable seed_shift index {seeds['seed_shift']}"
+    for name, seed in seeds.items():
+        yield f"variable {name} index {seed}"
     told = ['"total_steps": ${steps}', '"sample_steps": ${sample}']
     if gravity:
         told.append('"gravity": ${gravity}')
@@ -176,7 +255,7 @@ def _head(scene: Scene, start: Start, gravity: float | None) -> Iterator[str]:
 
 
 def _channel(scene: Channel, start: Start) -> Iterator[str]:
-    yield from _head(scene, start, scene.gravity)
+    yield from _head(scene, scene.gravity, srd_seeds(scene, start.step))
     yield "atom_style sphere"
     yield "atom_modify first colloids"
     yield from _read(start)
@@ -206,18 +285,13 @@ def _channel(scene: Channel, start: Start) -> Iterator[str]:
         yield "fix gravity colloids gravity ${gravity} vector 1 0 0"
     yield from _solvent(scene, "colloids", "overlap no inside ignore search 0.5 cubic warn 0.01")
     yield from _output(scene, start)
-    yield (
-        "dump trajectory colloids custom ${sample} trajectory.lammpsdump "
-        "id type x y z vx vy vz ix iy iz"
-    )
-    append = " append yes" if start.checkpoint else ""
-    yield f"dump_modify trajectory sort id first yes format float %.10g{append}"
+    yield from _trajectory(start)
     yield from _run()
 
 
 def _pure_fluid(scene: Poiseuille | Bulk, start: Start) -> Iterator[str]:
     gravity = scene.fluid_gravity
-    yield from _head(scene, start, gravity)
+    yield from _head(scene, gravity, srd_seeds(scene, start.step))
     yield "atom_style atomic"
     yield "atom_modify sort 100 1.0"
     yield from _read(start)
@@ -263,25 +337,43 @@ def _solvent(scene: Scene, colloids: str, colloid_options: str) -> Iterator[str]
 
 def _output(scene: Scene, start: Start) -> Iterator[str]:
     bins = 2 * round(scene.width)
-    looks = fluid_looks(scene)
-    window = f"{sample_steps(scene) // looks} {looks} ${{sample}}"
     file = "append" if start.checkpoint else "file"
     yield ""
     yield "# output: fluid by half-cell bins along y, averaged over each sampling interval"
     yield f"compute layers fluid chunk/atom bin/1d y lower {scene.width / bins!r} units box"
     yield (
-        f"fix profile fluid ave/chunk {window} layers density/number vx temp "
+        f"fix profile fluid ave/chunk {_window(scene)} layers density/number vx temp "
         f"{file} fluid_profile.dat"
     )
     yield f"compute thermal fluid temp/profile 1 0 0 y {bins}"
     yield "variable fluid_temperature equal c_thermal"
     yield "variable mean_velocity_x equal vcm(all,x)"
+    yield from _observables(scene, start)
+
+
+def _observables(scene: Scene, start: Start) -> Iterator[str]:
+    file = "append" if start.checkpoint else "file"
     yield (
-        f"fix observables all ave/time {window} v_fluid_temperature v_mean_velocity_x "
+        f"fix observables all ave/time {_window(scene)} v_fluid_temperature v_mean_velocity_x "
         f"{file} observables.dat"
     )
     yield "thermo $(20*v_sample)"
     yield "thermo_style custom step v_fluid_temperature v_mean_velocity_x"
+
+
+def _window(scene: Scene) -> str:
+    """Nevery, Nrepeat and Nfreq of an average over each sampling interval."""
+    looks = fluid_looks(scene)
+    return f"{sample_steps(scene) // looks} {looks} ${{sample}}"
+
+
+def _trajectory(start: Start) -> Iterator[str]:
+    yield (
+        "dump trajectory colloids custom ${sample} trajectory.lammpsdump "
+        "id type x y z vx vy vz ix iy iz"
+    )
+    append = " append yes" if start.checkpoint else ""
+    yield f"dump_modify trajectory sort id first yes format float %.10g{append}"
 
 
 def _run() -> Iterator[str]:
@@ -289,19 +381,38 @@ def _run() -> Iterator[str]:
     yield "run ${steps} upto"
 
 
+def _mpc_data(scene: Scene) -> Iterable[str]:
+    """The data file without the fluid: the box, and the colloids if there are any."""
+    state = initial_state(scene)
+    mass = scene.colloid_mass if isinstance(scene, Channel) else 1.0
+    yield f"# narrows: initial colloids of the scene {scene.name}\n\n"
+    yield f"{scene.colloids} atoms\n1 atom types\n\n"
+    yield from _box(scene)
+    yield f"\nMasses\n\n1 {mass!r}\n"
+    if scene.colloids:
+        yield "\nAtoms # atomic\n\n"
+        for i, (x, y) in enumerate(state.colloid_positions.tolist(), start=1):
+            yield f"{i} 1 {x!r} {y!r} 0.0\n"
+        yield "\nVelocities\n\n"
+        for i, (x, y) in enumerate(state.colloid_velocities.tolist(), start=1):
+            yield f"{i} {x!r} {y!r} 0.0\n"
+
+
+def _box(scene: Scene) -> Iterable[str]:
+    box = (*scene.box, 0.0)[:3]
+    for axis, (name, size) in enumerate(zip("xyz", box, strict=True)):
+        low, high = (0.0, size) if axis < scene.dimensions else (-0.5, 0.5)
+        yield f"{low!r} {high!r} {name}lo {name}hi\n"
+
+
 def _data(scene: Scene) -> Iterable[str]:
     """The data file: the initial state, colloids first."""
     state = initial_state(scene)
     colloids = len(state.colloid_positions)
     atoms = colloids + len(state.fluid_positions)
-    box = (*scene.box, 0.0)[:3]
-    low_high = [
-        (0.0, size) if axis < scene.dimensions else (-0.5, 0.5) for axis, size in enumerate(box)
-    ]
     yield f"# narrows: initial state of the scene {scene.name}\n\n"
     yield f"{atoms} atoms\n{2 if colloids else 1} atom types\n\n"
-    for axis, (low, high) in zip("xyz", low_high, strict=True):
-        yield f"{low!r} {high!r} {axis}lo {axis}hi\n"
+    yield from _box(scene)
     if not colloids:
         yield "\nMasses\n\n1 1.0\n"
 

@@ -99,6 +99,11 @@ class IntegratedWall:
         force = 7.5 * math.pi * self.strength * (231 / 160 * u**11 - u**5) / y
         return np.where(y < self.cutoff, force, 0.0)
 
+    def wall_fix(self, name: str, group: str) -> str:
+        """The compiled wall at both y faces: `fix wall/lj115` of lammps_plugin."""
+        faces = " ".join(f"{face} EDGE {self.strength!r} {self.sigma!r}" for face in ("ylo", "yhi"))
+        return f"fix {name} {group} wall/lj115 {faces}"
+
     def lepton_fix(self, name: str, group: str) -> str:
         """The exact wall at both y faces: `fix wall/lepton`, compiled at every step and so slow."""
         u = f"({self.sigma!r}/r)"

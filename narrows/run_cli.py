@@ -2,7 +2,7 @@
 
 import sys
 from pathlib import Path
-from typing import Annotated, Any
+from typing import Annotated, Any, Literal
 
 import typer
 from rich.console import Console
@@ -26,14 +26,20 @@ Settings = Annotated[
 Out = Annotated[Path, typer.Option("--out", metavar="DIR", help="a new or empty folder")]
 
 
-def deck(scene: SceneName, out: Out, file: SceneFile = None, settings: Settings = None) -> None:
-    """Write a folder that runs with `lmp -in in.lammps`, for fix srd."""
+def deck(
+    scene: SceneName,
+    out: Out,
+    file: SceneFile = None,
+    settings: Settings = None,
+    engine: Annotated[Literal["srd", "mpc"], typer.Option(help="solvent of the deck")] = "srd",
+) -> None:
+    """Write a folder that runs with `lmp -in in.lammps`, for fix srd or fix mpc."""
     with user_errors():
         chosen = _scene(scene, {}, file, settings)
         out.mkdir(parents=True, exist_ok=True)
         if any(out.iterdir()):
             raise RunError(f"{out} is not empty: choose another folder")
-        write_deck(chosen, out)
+        write_deck(chosen, out, engine)
         say(f"{out}: run it there with  lmp -in in.lammps  or  mpirun -np 2 lmp -in in.lammps")
 
 

