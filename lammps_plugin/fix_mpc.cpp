@@ -125,6 +125,8 @@ template <int D> void FixMPC<D>::make_solver()
     method.thermostat = std::make_unique<mpc::LayerThermostat<D>>(given_.temperature);
   else if (given_.tstat == "monte_carlo")
     method.thermostat = std::make_unique<mpc::MonteCarloThermostat<D>>(given_.temperature);
+  else if (given_.tstat == "maxwell_boltzmann")
+    method.thermostat = std::make_unique<mpc::MaxwellBoltzmannThermostat<D>>(given_.temperature);
   else if (given_.tstat == "rescale")
     method.thermostat = std::make_unique<mpc::RescalingThermostat<D>>(given_.temperature);
   else if (given_.tstat == "andersen")

@@ -79,7 +79,8 @@ MpcArguments<D>::MpcArguments(LAMMPS *lmp, int narg, char **arg)
     } else if (keyword == "shift") {
       shifted = choice(values(1), "shift", {"yes", "no"}) == "yes";
     } else if (keyword == "tstat") {
-      tstat = choice(values(1), "tstat", {"none", "layer", "monte_carlo", "rescale", "andersen"});
+      tstat = choice(values(1), "tstat",
+                     {"none", "layer", "monte_carlo", "maxwell_boltzmann", "rescale", "andersen"});
     } else if (keyword == "hydro") {
       hydro = choice(values(1), "hydro", {"on", "shuffle", "bath"});
     } else if (keyword == "field") {

@@ -87,6 +87,47 @@ template <int D> class MonteCarloThermostat : public Thermostat<D> {
   double temperature_;
 };
 
+// Each cell is scaled to an energy drawn from its canonical distribution (Huang et al., J. Comput.
+// Phys. 229, 168, 2010).
+template <int D> class MaxwellBoltzmannThermostat : public Thermostat<D> {
+ public:
+  explicit MaxwellBoltzmannThermostat(double temperature) : temperature_(temperature) {}
+
+  void scale(Collision<D> &collision) override
+  {
+    collision.grid.each_cell([&](int cell, const std::array<int, D> &rows) {
+      const auto &sum = collision.sums[cell];
+      const double energy = sum.relative_energy();
+      if (sum.count() < 2 || energy <= 0) return;
+      const int freedom = D * (static_cast<int>(sum.count()) - 1);
+      const double drawn = draw(collision.random, collision.grid.number(rows), freedom);
+      scale_about<D>(collision.turns[cell], collision.mean_after(cell),
+                     std::sqrt(temperature_ * drawn / energy));
+    });
+  }
+
+ private:
+  // Energy over temperature of so many degrees of freedom: half of them exponentials, and half the
+  // square of a normal for one left over.
+  static double draw(const CounterRandom &random, std::uint64_t cell, int freedom)
+  {
+    const int exponentials = freedom / 2;
+    double energy = 0;
+    int block = 0;
+    for (int k = 0; k < exponentials; k += 4, ++block) {
+      const auto u = uniforms(random.words(Stream::Thermostat, cell, block));
+      for (int j = 0; j < std::min(4, exponentials - k); ++j) energy -= std::log1p(-u[j]);
+    }
+    if (freedom % 2) {
+      const double z = normals<1>(random.words(Stream::Thermostat, cell, block))[0];
+      energy += 0.5 * z * z;
+    }
+    return energy;
+  }
+
+  double temperature_;
+};
+
 // All velocities are rescaled to a kinetic energy of D N T / 2 (3.39, 3.40).
 template <int D> class RescalingThermostat : public Thermostat<D> {
  public:

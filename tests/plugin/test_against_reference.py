@@ -28,6 +28,8 @@ CASES: dict[str, tuple[str, dict[str, Any]]] = {
     "slit, none": ("poiseuille", {**DRIVEN, "thermostat": "none"}),
     "slit, layer": ("poiseuille", {**DRIVEN, "thermostat": "layer"}),
     "slit, monte_carlo": ("poiseuille", {**DRIVEN, "thermostat": "monte_carlo"}),
+    "slit, maxwell_boltzmann": ("poiseuille", {**DRIVEN, "thermostat": "maxwell_boltzmann"}),
+    "bulk 3D, maxwell_boltzmann": ("bulk", {**BULK3D, "thermostat": "maxwell_boltzmann"}),
     "slit, rescale": ("poiseuille", {**DRIVEN, "thermostat": "rescale"}),
     "slit, andersen": ("poiseuille", {**DRIVEN, "thermostat": "andersen"}),
     "slit, shuffle": ("poiseuille", {**DRIVEN, "hydrodynamics": "shuffle"}),

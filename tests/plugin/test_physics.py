@@ -148,7 +148,9 @@ def test_momentum_with_colloids(lammps: Any) -> None:
     assert abs(colloids).max() > 0.1
 
 
-@pytest.mark.parametrize("tstat", ["layer", "monte_carlo", "rescale", "andersen"])
+@pytest.mark.parametrize(
+    "tstat", ["layer", "monte_carlo", "maxwell_boltzmann", "rescale", "andersen"]
+)
 def test_thermostats_equilibrate_a_hot_fluid(lammps: Any, tstat: str) -> None:
     """Started at kBT = 1, set to 2: equipartition and the fourth moment of Maxwell's."""
     lammps.commands_string(
