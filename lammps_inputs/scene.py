@@ -16,6 +16,8 @@ from pydantic import BaseModel, ConfigDict, Field, ValidationError
 Positive = Annotated[float, Field(gt=0)]
 NonNegative = Annotated[float, Field(ge=0)]
 
+MAX_COLLISIONS_PER_LOOK = 10  # velocities of the fluid decorrelate in a few collisions
+
 Hydrodynamics = Literal["on", "shuffle", "bath"]
 Thermostat = Literal["none", "layer", "monte_carlo", "maxwell_boltzmann", "rescale", "andersen"]
 Rotation = Literal["random_axis", "coordinate_axes"]
@@ -135,6 +137,26 @@ class FluidScene(BaseModel):
         return self.collisions_per_sample * max(
             1, math.ceil(total / self.collisions_per_sample - 1e-9)
         )
+
+    @property
+    def sample_steps(self) -> int:
+        """Engine steps between two outputs."""
+        return self.collisions_per_sample * self.steps_per_collision
+
+    @property
+    def total_steps(self) -> int:
+        """Engine steps of the whole run."""
+        return self.collisions * self.steps_per_collision
+
+    @property
+    def fluid_looks(self) -> int:
+        """Evenly spaced looks at the fluid that one output averages, at least two.
+
+        With a single one LAMMPS would also output at the step a run starts from.
+        """
+        sample = self.collisions_per_sample
+        longest = min(MAX_COLLISIONS_PER_LOOK, sample // 2)
+        return next(sample // every for every in range(longest, 0, -1) if sample % every == 0)
 
     def problems(self) -> Iterable[str]:
         """What is wrong with the combination of fields, one line each."""

@@ -6,7 +6,8 @@ from pathlib import Path
 from typing import Any
 
 from lammps_inputs import Scene
-from lammps_inputs.deck import Engine, Start, script
+from lammps_inputs.deck import Engine, script
+from lammps_inputs.deck_lines import Start
 from srd_driver.errors import RunError
 from srd_driver.run_directory import Progress
 from srd_driver.session import Array

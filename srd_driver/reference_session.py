@@ -5,7 +5,6 @@ from pathlib import Path
 import numpy as np
 
 from lammps_inputs import Scene
-from lammps_inputs.deck import fluid_looks, sample_steps
 from srd_driver.reference import ReferenceEngine
 from srd_driver.run_directory import Progress
 from srd_driver.session import Array
@@ -44,7 +43,7 @@ class ReferenceSession:
         return float(unwrapped.mean())
 
     def advance(self, steps: int) -> None:
-        for _ in range(steps // sample_steps(self._scene)):
+        for _ in range(steps // self._scene.sample_steps):
             self._sample()
 
     def save(self, file: str) -> None:
@@ -57,7 +56,7 @@ class ReferenceSession:
 
     def _sample(self) -> None:
         """One sampling interval: as many looks at the fluid as the deck takes, averaged."""
-        looks = fluid_looks(self._scene)
+        looks = self._scene.fluid_looks
         every = self._scene.collisions_per_sample // looks
         count, momentum, squares = np.zeros((3, self._bins))
         temperature = mean_velocity = 0.0
@@ -71,7 +70,7 @@ class ReferenceSession:
             squares += np.bincount(layer, (velocity**2).sum(axis=1), self._bins)
             temperature += self._engine.fluid_temperature() / looks
             mean_velocity += float(self._engine.mean_velocity()[0]) / looks
-        self.step += sample_steps(self._scene)
+        self.step += self._scene.sample_steps
 
         depth = self._scene.width / self._bins
         volume = depth * self._scene.length * np.prod(self._scene.box[2:])

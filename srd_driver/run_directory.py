@@ -12,7 +12,7 @@ from pathlib import Path
 from typing import Any
 
 from lammps_inputs import Scene
-from lammps_inputs.deck import Engine, check_engine, manifest, script, total_steps, write_deck
+from lammps_inputs.deck import Engine, check_engine, manifest, script, write_deck
 from srd_driver.errors import RunError
 
 CHANGEABLE = {"duration"}  # a run may be resumed to last longer
@@ -81,7 +81,7 @@ def reopen(scene: Scene, engine: Engine, directory: Path, ranks: int) -> Progres
     progress = Progress(**_read_json(directory / "progress.json", directory))
     if progress.checkpoint and not (directory / progress.checkpoint).exists():
         raise RunError(f"{directory}: its checkpoint {progress.checkpoint} is missing")
-    if progress.step < total_steps(scene):
+    if progress.step < scene.total_steps:
         try:
             cut_trajectory(directory / "trajectory.lammpsdump", progress.step)
             cut_table(directory / "observables.dat", progress.step)

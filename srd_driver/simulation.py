@@ -11,7 +11,7 @@ from typing import Any, Self
 
 import lammps_plugin
 from lammps_inputs import Scene
-from lammps_inputs.deck import Engine, sample_steps, total_steps
+from lammps_inputs.deck import Engine
 from srd_driver import run_directory
 from srd_driver.errors import RunError
 from srd_driver.parallel import agree, communicator
@@ -64,11 +64,11 @@ class Simulation:
         self.directory, self._progress = agree(
             self._comm, lambda: self._open(Path(directory) if directory else None, resume)
         )
-        samples = max(1, round(checkpoint_interval / scene.time_step / sample_steps(scene)))
-        self._checkpoint_steps = samples * sample_steps(scene)
+        samples = max(1, round(checkpoint_interval / scene.time_step / scene.sample_steps))
+        self._checkpoint_steps = samples * scene.sample_steps
         self._began = clock.perf_counter()
         self._piece = 1  # sampling intervals run between two reports
-        self._session = self._start() if self._progress.step < total_steps(scene) else None
+        self._session = self._start() if self._progress.step < scene.total_steps else None
 
     def _open(self, directory: Path | None, resume: bool) -> tuple[Path, Progress]:
         if directory is None:
@@ -114,7 +114,7 @@ class Simulation:
     @property
     def finished(self) -> bool:
         """Whether the scene's equilibration and duration are over."""
-        return self.step >= total_steps(self.scene)
+        return self.step >= self.scene.total_steps
 
     @property
     def colloid_positions(self) -> Array:
@@ -140,14 +140,14 @@ class Simulation:
             RunError: when the engine stops; what was written stays, `resume` goes on from the
                 newest checkpoint.
         """
-        sample = sample_steps(self.scene)
+        sample = self.scene.sample_steps
         self._run_until(
             self.step + max(1, round(time / self.scene.time_step / sample)) * sample, report
         )
 
     def finish(self, report: Callable[[Self], Any] | None = None) -> None:
         """Run to the end of the scene's duration; as `run`."""
-        self._run_until(total_steps(self.scene), report)
+        self._run_until(self.scene.total_steps, report)
 
     def checkpoint(self) -> None:
         """Write a checkpoint now: `resume` goes on from here."""
@@ -182,7 +182,7 @@ class Simulation:
         self.close()
 
     def _run_until(self, end: int, report: Callable[[Self], Any] | None) -> None:
-        sample = sample_steps(self.scene)
+        sample = self.scene.sample_steps
         while self.step < end:
             session = self._running()
             next_checkpoint = (self.step // self._checkpoint_steps + 1) * self._checkpoint_steps

@@ -7,8 +7,9 @@ from typing import Any
 import numpy as np
 import pytest
 
-from lammps_inputs import Scene, initial_state, make_scene
-from lammps_inputs.deck import Start, fluid_looks, script, srd_seeds, write_deck
+from lammps_inputs import Scene, initial_state, make_scene, srd_deck
+from lammps_inputs.deck import script, write_deck
+from lammps_inputs.deck_lines import Start
 from tests.conftest import Run
 
 SCENES = {
@@ -108,11 +109,11 @@ def test_decks_are_minimal() -> None:
 
 def test_every_seed_is_in_the_deck_and_follows_the_scene() -> None:
     one, other = scene("channel"), scene("channel", seed=2)
-    seeds = srd_seeds(one)
+    seeds = srd_deck.seeds(one)
     assert all(f"{name} index {value}" in script(one) for name, value in seeds.items())
-    assert set(seeds.values()).isdisjoint(srd_seeds(other).values())
+    assert set(seeds.values()).isdisjoint(srd_deck.seeds(other).values())
     # a resumed run must not draw the same numbers again
-    assert set(seeds.values()).isdisjoint(srd_seeds(one, step=1000).values())
+    assert set(seeds.values()).isdisjoint(srd_deck.seeds(one, step=1000).values())
     resumed = script(one, Start(1000, "checkpoint.1000.restart"))
     assert "read_restart checkpoint.1000.restart" in resumed
     assert "read_data" not in resumed
@@ -121,7 +122,7 @@ def test_every_seed_is_in_the_deck_and_follows_the_scene() -> None:
 def test_looks_at_the_fluid_divide_the_sampling_interval() -> None:
     for collisions in range(2, 100):
         one = scene("bulk", sampling_interval=collisions * 0.1)
-        looks = fluid_looks(one)
+        looks = one.fluid_looks
         assert one.collisions_per_sample == collisions
         assert collisions % looks == 0
         assert collisions // looks <= 10

@@ -13,7 +13,7 @@ import pytest
 from numpy.typing import NDArray
 
 from lammps_inputs import InitialState, make_scene
-from lammps_inputs.deck import fluid_file
+from lammps_inputs.mpc_deck import fluid_file
 from lammps_inputs.potentials import RepulsiveMie
 from srd_driver import Simulation
 from srd_driver.parallel import communicator

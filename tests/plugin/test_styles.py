@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 from lammps_inputs import InitialState, make_scene
-from lammps_inputs.deck import fluid_file
+from lammps_inputs.mpc_deck import fluid_file
 from lammps_inputs.potentials import IntegratedWall
 from srd_driver.parallel import communicator
 from tests.conftest import Run
