@@ -119,7 +119,7 @@ def sizes(dimensions: int, largest: float) -> dict[int, float]:
 
 def two_ranks(pairs: int) -> float:
     """Speed of two ranks over one on 1e6 particles in 2D; needs two idle processors."""
-    deck = Deck("mpc_bulk2d", 60, 998560, ("-var", "n", "316"))
+    deck = Deck("mpc_bulk2d", 150, 998560, ("-var", "n", "316"))
     return median(deck.speed(2) / deck.speed(1) for _ in range(pairs))
 
 
