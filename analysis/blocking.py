@@ -75,7 +75,8 @@ def mean(series: ArrayLike) -> Estimate:
     and at least 1, the block length is the smallest with B^3 > 2 n g^2 (Lee et al.), or, in a
     series too short for that, the longest that leaves `MIN_BLOCKS` blocks. When that block is
     shorter than `MIN_BLOCK_LENGTH` g the correlation is not resolved: the error is a lower bound,
-    and the estimate says so. Fewer than `MIN_BLOCKS` samples have no error.
+    and the estimate says so; so it does of the plain error of fewer than `MIN_BLOCKS` samples. A
+    single sample has none.
 
     Args:
         series: samples, (n,).
@@ -86,8 +87,11 @@ def mean(series: ArrayLike) -> Estimate:
     value = float(samples.mean())
     if np.all(samples == samples[0]):
         samples = np.zeros_like(samples)  # a constant has error 0, not the rounding of its mean
+    if len(samples) == 1:
+        return Estimate(value, None, "one sample has no error")
     if len(samples) < MIN_BLOCKS:
-        return Estimate(value, None, f"{len(samples)} samples are too few for an error")
+        error = float(samples.std(ddof=1) / np.sqrt(len(samples)))
+        return Estimate(value, error, f"at least: {len(samples)} samples are too few")
     lengths, errors = blocking_curve(samples)
     if errors[0] == 0:
         return Estimate(value, 0.0)

@@ -102,11 +102,11 @@ def test_no_viscosity(tmp_path, gravity, reason):
     assert viscosity["theory"] is not None
 
 
-def test_short_run_has_values_without_errors(tmp_path):
+def test_short_run_has_lower_bounds_for_errors(tmp_path):
     poiseuille(tmp_path, intervals=10)
     summary = analyzed(tmp_path)
-    assert summary["viscosity"]["error"] is None
-    assert summary["viscosity"]["reason"] == "5 samples are too few for an error"
+    assert summary["viscosity"]["error"] > 0
+    assert summary["viscosity"]["reason"] == "at least: 5 samples are too few"
 
 
 def test_fluid_without_theory(tmp_path):
