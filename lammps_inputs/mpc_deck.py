@@ -11,9 +11,10 @@ from lammps_inputs.deck_lines import Start, box, head, observables, read, run, t
 
 def write(scene: Scene, directory: Path) -> None:
     """What the input script reads: the colloids, and the fluid."""
+    state = initial_state(scene)
     with (directory / "state.data").open("w", encoding="utf-8") as file:
-        file.writelines(_data(scene))
-    (directory / "state.fluid").write_bytes(fluid_file(initial_state(scene)))
+        file.writelines(_data(scene, state))
+    (directory / "state.fluid").write_bytes(fluid_file(state))
 
 
 def fluid_file(state: InitialState, collisions: int = 0) -> bytes:
@@ -26,7 +27,6 @@ def fluid_file(state: InitialState, collisions: int = 0) -> bytes:
 
 def lines(scene: Scene, start: Start) -> Iterator[str]:
     """The input script."""
-    pulled = isinstance(scene, Channel) and scene.gravity
     gravity = scene.gravity if isinstance(scene, Channel) else scene.fluid_gravity
     yield from head(scene, gravity, {"seed": scene.seed})
     yield "atom_modify sort 0 0.0 # the order of the atoms decides the last bit of sums"
@@ -49,8 +49,8 @@ def lines(scene: Scene, start: Start) -> Iterator[str]:
         yield "fix motion colloids nve"
         if scene.wall_strength > 0:
             yield scene.colloid_wall.wall_fix("wall", "colloids")
-    if pulled:
-        yield "fix gravity colloids gravity ${gravity} vector 1 0 0"
+        if scene.gravity:
+            yield "fix gravity colloids gravity ${gravity} vector 1 0 0"
     yield ""
     yield "# the MPC solvent"
     yield from _solvent(scene, start)
@@ -73,7 +73,7 @@ def _solvent(scene: Scene, start: Start) -> Iterator[str]:
     looks = scene.fluid_looks
     options = ["load state.fluid", f"density {scene.density!r}", f"angle {scene.angle!r}"]
     if isinstance(scene, Bulk) and scene.dimension == 3:
-        options.append(f"axis {scene.rotation.partition('_')[0].replace('axes', '')}")
+        options.append(f"axis {scene.rotation.partition('_')[0]}")
     options += [f"tstat {scene.thermostat}", f"hydro {scene.hydrodynamics}"]
     if scene.fluid_gravity:
         options.append("field ${gravity} 0 0")
@@ -89,9 +89,8 @@ def _solvent(scene: Scene, start: Start) -> Iterator[str]:
     )
 
 
-def _data(scene: Scene) -> Iterable[str]:
+def _data(scene: Scene, state: InitialState) -> Iterable[str]:
     """The data file without the fluid: the box, and the colloids if there are any."""
-    state = initial_state(scene)
     mass = scene.colloid_mass if isinstance(scene, Channel) else 1.0
     yield f"# narrows: initial colloids of the scene {scene.name}\n\n"
     yield f"{scene.colloids} atoms\n1 atom types\n\n"

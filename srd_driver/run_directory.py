@@ -83,6 +83,7 @@ def reopen(scene: Scene, engine: Engine, directory: Path, ranks: int) -> Progres
         raise RunError(f"{directory}: its checkpoint {progress.checkpoint} is missing")
     if progress.step < scene.total_steps:
         try:
+            write_progress(directory, progress)  # drops a checkpoint that a kill left half written
             cut_trajectory(directory / "trajectory.lammpsdump", progress.step)
             cut_table(directory / "observables.dat", progress.step)
             cut_table(directory / "fluid_profile.dat", progress.step)

@@ -144,6 +144,16 @@ def test_a_checkpoint_may_be_made_at_any_time(engine: Engine, tmp_path: Path) ->
     assert checkpoint.name.startswith("checkpoint.600.")
 
 
+def test_a_checkpoint_that_a_kill_left_half_written_is_not_taken(tmp_path: Path) -> None:
+    with Simulation(channel(), "srd", tmp_path) as run:
+        run.run(0.3)
+    (tmp_path / "checkpoint.600.restart").write_bytes(b"half")
+    with Simulation(channel(), "srd", tmp_path, resume=True) as run:
+        run.run(0.3)  # ends, with a checkpoint, at the step of the broken file
+    with Simulation(channel(), "srd", tmp_path, resume=True) as run:
+        run.finish()
+
+
 def test_a_finished_run_can_be_made_longer(tmp_path: Path) -> None:
     with Simulation(channel(), "reference", tmp_path) as run:
         run.finish()
