@@ -3,12 +3,12 @@
 #pragma once
 
 #include "grid.h"
+#include "memory.h"
 
 #include <cstddef>
 #include <cstdint>
 #include <stdexcept>
 #include <string>
-#include <vector>
 
 namespace mpc {
 
@@ -30,9 +30,9 @@ struct FluidHeader {
 };
 
 template <int D> struct Fluid {
-  std::array<std::vector<double>, D> x, v;
-  std::vector<std::uint32_t> id;
-  std::vector<std::int32_t> cell;    // among this process's cells
+  std::array<Array<double>, D> x, v;
+  Array<std::uint32_t> id;
+  Array<std::int32_t> cell;    // among this process's cells
 
   int size() const { return static_cast<int>(id.size()); }
 
@@ -93,7 +93,7 @@ template <int D> struct Fluid {
     cell.reserve(capacity);
   }
 
-  template <class T> static void take_last(std::vector<T> &values, int i)
+  template <class T> static void take_last(Array<T> &values, int i)
   {
     values[i] = values.back();
     values.pop_back();

@@ -169,7 +169,6 @@ template <int D> class Solver {
  private:
   static constexpr int BLOCK = 512;           // particles; their state fits the first-level cache
   static constexpr int AHEAD = 32;            // particles
-  static constexpr int CACHE_LINE = 64;       // bytes
   static constexpr int SORT_INTERVAL = 64;    // collisions, in which a particle moves a few cells
   static constexpr int TILE = D == 2 ? 8 : 4;    // cells along each edge; they share a cache
   static constexpr int STRAY = -1, TAKEN = -2;    // instead of a cell
@@ -190,12 +189,22 @@ template <int D> class Solver {
   // Ask for what the particle a few further on needs of its cell: caches do not foresee it. Inlined
   // always, as GCC drops calls that do nothing else.
   template <class Value>
-  __attribute__((always_inline)) inline void prefetch(const std::vector<Value> &of_cells, int i) const
+  __attribute__((always_inline)) inline void prefetch(const Array<Value> &of_cells, int i) const
   {
     const int cell = fluid_.cell[std::min(i + AHEAD, fluid_.size() - 1)];
     const auto *value = reinterpret_cast<const char *>(of_cells.data() + cell);
     for (std::size_t line = 0; line < sizeof(Value); line += CACHE_LINE)
       __builtin_prefetch(value + line, 1);
+  }
+
+  __attribute__((always_inline)) inline void prefetch_state(int i) const
+  {
+    i = std::min(i, fluid_.size() - 1);
+    for (int a = 0; a < D; ++a) {
+      __builtin_prefetch(fluid_.x[a].data() + i, 1);
+      __builtin_prefetch(fluid_.v[a].data() + i, 1);
+    }
+    __builtin_prefetch(fluid_.cell.data() + i, 1);
   }
 
   void turn(int begin, int end)
@@ -270,7 +279,9 @@ template <int D> class Solver {
 
   void sum(int begin, int end)
   {
+    constexpr int line = CACHE_LINE / sizeof(double);
     for (int i = begin; i < end; ++i) {
+      if (i % line == 0) prefetch_state(i + BLOCK);    // of the next block
       if constexpr (D == 3) prefetch(sums_, i);
       int cell = fluid_.cell[i];
       if (cell < 0) {
@@ -428,13 +439,13 @@ template <int D> class Solver {
       reorder(fluid_.x[a], sorted_);
       reorder(fluid_.v[a], sorted_);
     }
-    std::vector<std::uint32_t> ids;
+    Array<std::uint32_t> ids;
     reorder(fluid_.id, ids);
-    std::vector<std::int32_t> cells;
+    Array<std::int32_t> cells;
     reorder(fluid_.cell, cells);
   }
 
-  template <class T> void reorder(std::vector<T> &values, std::vector<T> &sorted)
+  template <class T> void reorder(Array<T> &values, Array<T> &sorted)
   {
     sorted.resize(values.size());
     for (std::size_t i = 0; i < values.size(); ++i) sorted[order_[i]] = values[i];
@@ -447,13 +458,13 @@ template <int D> class Solver {
   Fluid<D> fluid_;
   double particles_ = 0;             // of all processes
   std::uint64_t collisions_ = 0;
-  std::vector<CellSum<D>> sums_;
-  std::vector<Turn<D>> turns_;       // of the last collision
+  Array<CellSum<D>> sums_;
+  Array<Turn<D>> turns_;       // of the last collision
   bool turning_ = false;             // whether they are still to be applied
   std::vector<int> strays_;          // indices of particles in no cell of this process
   std::vector<Particle<D>> travelling_;
   std::vector<int> order_;           // buffers of sort_by_tile
-  std::vector<double> sorted_;
+  Array<double> sorted_;
 };
 
 }    // namespace mpc

@@ -11,8 +11,8 @@ namespace mpc {
 template <int D> struct Collision {
   const Grid<D> &grid;
   const CounterRandom &random;
-  const std::vector<CellSum<D>> &sums;
-  std::vector<Turn<D>> &turns;
+  const Array<CellSum<D>> &sums;
+  Array<Turn<D>> &turns;
   Processes &processes;
   double particles;    // of all processes
 
