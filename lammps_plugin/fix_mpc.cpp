@@ -1,6 +1,7 @@
 #include "fix_mpc.h"
 
 #include "core/force_coupling.h"
+#include "core/no_slip_walls.h"
 
 #include "atom.h"
 #include "comm.h"
@@ -117,10 +118,12 @@ template <int D> void FixMPC<D>::make_solver()
   const mpc::Grid<D> grid(box, periodic, given_.edge);
   interval_ = update->dt * given_.every;
 
-  const double width = domain->yperiodic ? mpc::NO_WALLS : domain->yprd;
   const mpc::Rotation rotation(given_.angle * M_PI / 180, given_.axes);
-  mpc::Method<D> method{given_.seed, interval_, given_.temperature, given_.density, given_.field,
-                        width, rotation,  given_.shifted,     {},       {},     {}};
+  mpc::Method<D> method{
+      given_.seed, interval_, given_.field, rotation, given_.shifted, {}, {}, {}, {}};
+  if (!domain->yperiodic)
+    method.walls =
+        std::make_unique<mpc::NoSlipWalls<D>>(domain->yprd, given_.density, given_.temperature);
   if (given_.tstat == "layer")
     method.thermostat = std::make_unique<mpc::LayerThermostat<D>>(given_.temperature);
   else if (given_.tstat == "monte_carlo")
@@ -136,8 +139,8 @@ template <int D> void FixMPC<D>::make_solver()
   else if (given_.hydro == "bath")
     method.random_solvent = std::make_unique<mpc::BathSolvent<D>>(given_.temperature);
   if (!given_.interactions.empty())
-    method.coupling =
-        std::make_unique<mpc::ForceCoupling<D>>(interval_, given_.temperature, given_.field, width);
+    method.coupling = std::make_unique<mpc::ForceCoupling<D>>(
+        interval_, given_.temperature, given_.field, method.walls.get());
   solver_ = std::make_unique<mpc::Solver<D>>(grid, std::move(method), processes_);
 }
 

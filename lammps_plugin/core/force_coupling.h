@@ -2,9 +2,10 @@
 // (tabatabaei-2009, 3.42, 3.45, 3.46, 3.50 to 3.52).
 //
 // Who must be taken, exactly: a particle outside the cutoff feels no force, so until it comes
-// within it flies at constant speed (and gains field * time). A particle that cannot come within
-// the cutoff of any colloid at that speed before the interval ends, while no colloid moves further
-// than its allowance, flies free all the way. The allowance is checked at every force evaluation.
+// within it flies at constant speed (and gains field * time, and what a moving wall adds). A
+// particle that cannot come within the cutoff of any colloid at that speed before the interval
+// ends, while no colloid moves further than its allowance, flies free all the way. The allowance is
+// checked at every force evaluation.
 //
 // A taken particle may become faster. It is paired with every colloid it could reach at PAIR_SPEED;
 // from when it is faster than CHECKED_SPEED, with all.
@@ -20,10 +21,11 @@ namespace mpc {
 
 template <int D> class ForceCoupling : public Coupling<D> {
  public:
-  ForceCoupling(double interval, double temperature, const Vector<D> &field, double width)
+  ForceCoupling(double interval, double temperature, const Vector<D> &field,
+                const Walls<D> *walls)
     : interval_(interval), thermal_speed_(std::sqrt(temperature)),
       usual_(square_of(CHECKED_SPEED * thermal_speed_)), field_(field),
-      gain_(std::sqrt(square<D>(field)) * interval), width_(width)
+      gain_(std::sqrt(square<D>(field)) * interval + (walls ? walls->gain() : 0)), walls_(walls)
   {
   }
 
@@ -112,7 +114,7 @@ template <int D> class ForceCoupling : public Coupling<D> {
       acceleration.values[a] = old_[a].data();
     }
     try {
-      stream<D>(x, v, acceleration, time, width_, 0, static_cast<int>(taken_.size()));
+      stream<D>(x, v, acceleration, time, walls_, 0, static_cast<int>(taken_.size()));
     } catch (const TooManyBounces &bounces) {
       throw Fault(bounce_message(ids_[bounces.index]));
     }
@@ -409,8 +411,8 @@ template <int D> class ForceCoupling : public Coupling<D> {
   double interval_, thermal_speed_;
   double usual_;    // square of the checked speed
   Vector<D> field_;
-  double gain_;     // of speed in an interval, from the field
-  double width_;
+  double gain_;     // of speed in an interval, from the field and the walls
+  const Walls<D> *walls_;
 
   Grid<D> grid_{{}, {}, 1.0};             // as it was when the interval began
   std::vector<Colloid<D>> colloids_;      // as they were

@@ -13,7 +13,6 @@
 #include "random_solvent.h"
 #include "streaming.h"
 #include "thermostat.h"
-#include "walls.h"
 
 #include <memory>
 
@@ -22,14 +21,12 @@ namespace mpc {
 template <int D> struct Method {
   std::uint64_t seed;
   double interval;       // tau_c
-  double temperature;
-  double density;        // n_f of the virtual wall particles
   Vector<D> field;       // acceleration of the fluid
-  double width;          // between the walls, or NO_WALLS
   Rotation rotation;
   bool shifted;          // whether the grid is shifted at each collision
+  std::unique_ptr<Walls<D>> walls;                   // across y, or none
   std::unique_ptr<Thermostat<D>> thermostat;         // or none
-  std::unique_ptr<RandomSolvent<D>> random_solvent;    // or none
+  std::unique_ptr<RandomSolvent<D>> random_solvent;  // or none
   std::unique_ptr<Coupling<D>> coupling;             // or none
 };
 
@@ -239,7 +236,8 @@ template <int D> class Solver {
       v[a] = fluid_.v[a].data();
     }
     try {
-      stream<D>(x, v, Field<D>{method_.field}, method_.interval, method_.width, begin, end);
+      stream<D>(x, v, Field<D>{method_.field}, method_.interval, method_.walls.get(), begin,
+                end);
     } catch (const TooManyBounces &bounces) {
       throw Fault("fluid particle " + std::to_string(fluid_.id[bounces.index]) +
                   " meets the walls more than " + std::to_string(MOST_BOUNCES) +
@@ -397,13 +395,12 @@ template <int D> class Solver {
 
   void make_turns(const CounterRandom &random)
   {
+    const auto *walls = method_.walls.get();
     grid_.each_cell([&](int cell, const std::array<int, D> &rows) {
       const auto &sum = sums_[cell];
       const auto number = grid_.number(rows);
-      const bool filled = cut_by_wall<D>(grid_, rows[1]) && sum.count() < method_.density;
-      const auto mean = filled
-          ? mean_with_virtual_particles<D>(sum, method_.density, method_.temperature, random, number)
-          : sum.mean();
+      const auto wall = walls ? walls->cutting(grid_, rows[1]) : std::nullopt;
+      const auto mean = wall ? walls->mean_of_cut(*wall, sum, random, number) : sum.mean();
       method_.rotation.draw(random, number, turns_[cell]);
       fix_point<D>(turns_[cell], mean);
     });

@@ -1,17 +1,16 @@
-// Streaming: free flight in a constant field, with bounce-back at the walls y = 0 and y = width.
+// Streaming: free flight in a constant field, and the exact time of contact with walls.
 // Equations of tabatabaei-2009, 3.2.1, 3.2.5 and 3.4.3.
 
 #pragma once
 
 #include "fluid.h"
+#include "walls.h"
 
 #include <algorithm>
-#include <limits>
 
 namespace mpc {
 
 constexpr int MOST_BOUNCES = 100;    // in one step; thermal particles need one
-constexpr double NO_WALLS = std::numeric_limits<double>::infinity();
 
 // First t with v t + a t^2 / 2 = distance (3.44 corrected), for a wall that is reached; of the two
 // forms of the root the one that subtracts nothing.
@@ -21,11 +20,11 @@ inline double contact_time(double distance, double velocity, double acceleration
   return velocity > 0 ? 2 * distance / (velocity + speed) : (speed - velocity) / acceleration;
 }
 
-// Position and velocity after a time, reversed at each contact with a wall (3.11, 3.13 corrected).
-// False when there are too many contacts.
+// Position and velocity after a time, with all contacts on the way (3.11, 3.13 corrected). False
+// when there are too many.
 template <int D>
-bool bounce_back(Vector<D> &x, Vector<D> &v, const Vector<D> &acceleration, double time,
-                 double width)
+bool fly_between(const Walls<D> &walls, Vector<D> &x, Vector<D> &v, const Vector<D> &acceleration,
+                 double time)
 {
   const auto fly = [&](double t) {
     for (int a = 0; a < D; ++a) {
@@ -35,17 +34,17 @@ bool bounce_back(Vector<D> &x, Vector<D> &v, const Vector<D> &acceleration, doub
   };
   for (int bounce = 0; bounce < MOST_BOUNCES; ++bounce) {
     const double end = x[1] + time * (v[1] + 0.5 * time * acceleration[1]);
-    if (!(end < 0 || end > width)) {
+    if (!(end < 0 || end > walls.width())) {
       fly(time);
       return true;
     }
     const double outwards = end < 0 ? -1 : 1;
-    const double wall = end < 0 ? 0 : width;
+    const double wall = end < 0 ? 0 : walls.width();
     const double contact = std::min(
         contact_time(outwards * (wall - x[1]), outwards * v[1], outwards * acceleration[1]), time);
     fly(contact);
     x[1] = wall;
-    for (double &component : v) component = -component;
+    walls.contact(end < 0 ? Face::Lower : Face::Upper, v);
     time -= contact;
   }
   return false;
@@ -68,14 +67,15 @@ struct TooManyBounces {
   int index;
 };
 
-// Move particles begin ... end - 1 for a time (3.3, 3.51).
+// Move particles begin ... end - 1 for a time, between walls if there are any (3.3, 3.51).
 template <int D, class Acceleration>
 void stream(const std::array<double *, D> &positions, const std::array<double *, D> &velocities,
-            const Acceleration &acceleration, double time, double width, int begin, int end)
+            const Acceleration &acceleration, double time, const Walls<D> *walls, int begin, int end)
 {
   static thread_local std::vector<std::pair<int, std::array<Vector<D>, 2>>> bounced;
   bounced.clear();
-  if (width != NO_WALLS) {
+  if (walls) {
+    const double width = walls->width();
     const double *y = positions[1];
     const double *vy = velocities[1];
     const auto beyond = [&](int i) {
@@ -93,7 +93,7 @@ void stream(const std::array<double *, D> &positions, const std::array<double *,
         v[d] = velocities[d][i];
         a[d] = acceleration(d, i);
       }
-      if (!bounce_back<D>(x, v, a, time, width)) throw TooManyBounces{i};
+      if (!fly_between<D>(*walls, x, v, a, time)) throw TooManyBounces{i};
       bounced.push_back({i, {x, v}});
     }
   }

@@ -2,6 +2,7 @@
 // hand. Run by test_core.py, also under the address and undefined-behaviour sanitizers.
 
 #include "force_coupling.h"
+#include "no_slip_walls.h"
 #include "profile.h"
 #include "solver.h"
 
@@ -29,7 +30,7 @@ bool close(double a, double b, double tolerance = 1e-14)
 template <int D> Method<D> method(double interval = 0.1)
 {
   const Rotation rotation(M_PI / 2, Axes::Coordinate);
-  return {1, interval, 1.0, 10.0, {}, NO_WALLS, rotation, true, {}, {}, {}};
+  return {1, interval, {}, rotation, true, {}, {}, {}, {}};
 }
 
 // A fluid of given particles in a box of 4 cells along each axis.
@@ -38,10 +39,9 @@ template <int D> struct Box {
   Grid<D> grid;
   std::unique_ptr<Solver<D>> solver;
 
-  explicit Box(std::vector<Particle<D>> particles, Method<D> how = method<D>(), bool walls = false)
-    : grid(size(), periodic(walls), 1.0)
+  explicit Box(std::vector<Particle<D>> particles, Method<D> how = method<D>())
+    : grid(size(), periodic(how.walls != nullptr), 1.0)
   {
-    if (walls) how.width = 4;
     solver = std::make_unique<Solver<D>>(grid, std::move(how), alone);
     solver->reset(0, grid.lower, grid.upper);
     for (const auto &particle : particles) solver->add(particle);
@@ -128,14 +128,15 @@ void rotation_in_three_dimensions_is_orthogonal()
 // From y = 0.3 at v_y = -1 a wall is met after 0.3; the particle goes back along its way.
 void bounce_back_reverses()
 {
+  const NoSlipWalls<2> walls(4, 10, 1);
   Vector<2> x{1, 0.3}, v{2, -1};
-  CHECK(bounce_back<2>(x, v, {}, 0.5, 4));
+  CHECK(fly_between<2>(walls, x, v, {}, 0.5));
   CHECK(close(x[0], 1 + 2 * 0.3 - 2 * 0.2) && close(x[1], 0.2));
   CHECK(v[0] == -2 && v[1] == 1);
   // falling: 0.08 = t_c^2 / 2 of an acceleration 1 gives t_c = 0.4 and a speed of 0.4
   x = {0, 0.08};
   v = {0, 0};
-  CHECK(bounce_back<2>(x, v, {0, -1}, 0.8, 4));
+  CHECK(fly_between<2>(walls, x, v, {0, -1}, 0.8));
   CHECK(close(x[1], 0.08) && close(v[1], 0));
 }
 
@@ -241,11 +242,141 @@ void thermostats_reach_their_temperature()
 // A wall cell without fluid has v_cm = zeta / n_f: of variance T / n_f in each component.
 void virtual_particles_have_the_right_variance()
 {
+  const NoSlipWalls<2> walls(4, 10, 2);
   double square_sum = 0;
   constexpr int draws = 20000;
   for (int cell = 0; cell < draws; ++cell)
-    square_sum += square<2>(mean_with_virtual_particles<2>({}, 10, 2, CounterRandom{5, 0}, cell));
+    square_sum += square<2>(walls.mean_of_cut(Face::Lower, {}, CounterRandom{5, 0}, cell));
   CHECK(close(square_sum / draws, 2 * 2.0 / 10, 0.4 * 5 / std::sqrt(draws)));    // 5 sigma
+}
+
+// Which rows of cells reach beyond y = 0 or 4, on a grid shifted by 0.3: of 0 ... 4 the ends.
+void walls_cut_the_rows_that_reach_beyond_them()
+{
+  const NoSlipWalls<2> walls(4, 10, 1);
+  Grid<2> grid({4, 4}, {true, false}, 1.0);
+  CHECK(!walls.cutting(grid, 0) && !walls.cutting(grid, 3) && walls.cutting(grid, 4) == Face::Upper);
+  grid.shift = {0.9, 0.3};
+  CHECK(walls.cutting(grid, 0) == Face::Lower && walls.cutting(grid, 4) == Face::Upper);
+  for (int row : {1, 2, 3}) CHECK(!walls.cutting(grid, row));
+}
+
+// All that a user has to write for walls that slide along x, the upper one at a speed and the lower
+// one against it.
+class SlidingWalls : public NoSlipWalls<2> {
+ public:
+  SlidingWalls(double width, double density, double temperature, double speed)
+    : NoSlipWalls(width, density, temperature), density_(density), speed_(speed)
+  {
+  }
+
+  void contact(Face face, Vector<2> &velocity) const override
+  {
+    NoSlipWalls::contact(face, velocity);
+    velocity[0] += 2 * of(face);
+  }
+
+  double gain() const override { return 2 * speed_; }
+
+  Vector<2> mean_of_cut(Face face, const CellSum<2> &sum, const CounterRandom &random,
+                        std::uint64_t cell) const override
+  {
+    auto mean = NoSlipWalls::mean_of_cut(face, sum, random, cell);
+    mean[0] += std::max(1 - sum.count() / density_, 0.0) * of(face);
+    return mean;
+  }
+
+ private:
+  double of(Face face) const { return face == Face::Upper ? speed_ : -speed_; }
+
+  double density_, speed_;
+};
+
+// Mean and its standard error.
+std::array<double, 2> estimate(const std::vector<double> &samples)
+{
+  double sum = 0, squares = 0;
+  for (double sample : samples) sum += sample;
+  const double mean = sum / samples.size();
+  for (double sample : samples) squares += (sample - mean) * (sample - mean);
+  return {mean, std::sqrt(squares / (samples.size() * (samples.size() - 1.0)))};
+}
+
+// Couette flow: a straight line between the walls, whose slope says that the fluid slips as past
+// walls at rest: by a length of 0.20 +- 0.01 (docs/reference.md). Bounds are 4 standard errors. Less
+// than a cell from the walls the line bends, as the last half cell lags by 0.6 % of their speed.
+void sliding_walls_drive_couette_flow()
+{
+  constexpr int length = 32, width = 10, bins = 20, skip = 2, blocks = 60, collisions = 250;
+  constexpr double speed = 1, density = 10;
+  Processes alone;
+  const Grid<2> grid({length, width}, {true, false}, 1.0);
+  auto how = method<2>();
+  how.walls = std::make_unique<SlidingWalls>(width, density, 1.0, speed);
+  how.thermostat = std::make_unique<LayerThermostat<2>>(1.0);
+  Solver<2> solver(grid, std::move(how), alone);
+  solver.reset(0, grid.lower, grid.upper);
+  for (int i = 0; i < density * length * width; ++i) {
+    const auto words = CounterRandom{77, 0}.words(Stream::Create, i);
+    const auto u = uniforms(words);
+    const auto z = normals<2>(CounterRandom{77, 1}.words(Stream::Create, i));
+    solver.add({static_cast<double>(i), {length * u[0], width * u[1]}, {z[0], z[1]}});
+  }
+  solver.count();
+
+  const auto from_middle = [&](int b) { return (b + 0.5) * width / bins - 0.5 * width; };
+  std::vector<double> slopes, middles, profile[bins];
+  for (int block = -4; block < blocks; ++block) {    // the first to reach the steady state
+    std::vector<Layer> sum(bins);
+    for (int k = 0; k < collisions; ++k) {
+      solver.begin_interval({}, 0);
+      solver.end_interval();
+      if (k % 5) continue;
+      solver.turn();
+      const auto now = layers<2>(solver.fluid(), grid, bins, alone);
+      for (int b = 0; b < bins; ++b) {
+        sum[b].count += now[b].count;
+        sum[b].momentum_x += now[b].momentum_x;
+      }
+    }
+    if (block < 0) continue;
+    double covariance = 0, variance = 0, middle = 0;
+    for (int b = skip; b < bins - skip; ++b) {
+      const double y = from_middle(b), v = sum[b].momentum_x / sum[b].count;
+      covariance += y * v;
+      variance += y * y;
+      middle += v / (bins - 2 * skip);
+      profile[b].push_back(v);
+    }
+    slopes.push_back(covariance / variance);
+    middles.push_back(middle);
+  }
+  const auto [slope, slope_error] = estimate(slopes);
+  const auto [middle, middle_error] = estimate(middles);
+  const double slip = speed / slope - 0.5 * width;
+  const double slip_error = speed / (slope * slope) * slope_error;
+  std::printf("Couette flow: slip length %.3f +- %.3f\n", slip, slip_error);
+  CHECK(slip_error < 0.02 && close(slip, 0.20, 4 * std::hypot(slip_error, 0.01)));
+  CHECK(close(middle, 0, 4 * middle_error));
+  for (int b = skip; b < bins - skip; ++b) {
+    const auto [v, error] = estimate(profile[b]);
+    CHECK(error < 0.005 * speed && close(v, slope * from_middle(b), 4 * error));
+  }
+}
+
+// At its own speed the particle moves 0.1 in the interval; thrown by a fast wall, close to 4. The
+// colloid's cutoff begins 0.9 away.
+void fluid_thrown_by_a_wall_is_near()
+{
+  for (double speed : {0.0, 20.0}) {
+    auto how = method<2>(0.1);
+    how.walls = std::make_unique<SlidingWalls>(4, 10, 1.0, speed);
+    how.coupling =
+        std::make_unique<ForceCoupling<2>>(0.1, 1.0, Vector<2>{}, how.walls.get());
+    Box<2> box({{0, {1, 3.99}, {0, 1}}}, std::move(how));
+    box.solver->begin_interval({{0, {3, 3.5}, 1.0, 1.0}}, 0.0);
+    CHECK(box.solver->coupling()->taken().size() == (speed > 0));
+  }
 }
 
 // Sums by layer: two particles in the lower half, one in the upper.
@@ -270,7 +401,7 @@ void only_what_is_near_needs_integration()
     return kept;
   }();
   auto how = method<2>(interval);
-  how.coupling = std::make_unique<ForceCoupling<2>>(interval, 1.0, Vector<2>{}, NO_WALLS);
+  how.coupling = std::make_unique<ForceCoupling<2>>(interval, 1.0, Vector<2>{}, nullptr);
   Box<2> box(particles, std::move(how));
   std::vector<Colloid<2>> colloids{{0, {2, 2}, 1.0, sigma}};
   std::vector<Vector<2>> forces(1);
@@ -318,7 +449,7 @@ void coupling_faults()
 {
   const auto with = [](Vector<2> fluid, Vector<2> colloid, Vector<2> later) {
     auto how = method<2>(0.1);
-    how.coupling = std::make_unique<ForceCoupling<2>>(0.1, 1.0, Vector<2>{}, NO_WALLS);
+    how.coupling = std::make_unique<ForceCoupling<2>>(0.1, 1.0, Vector<2>{}, nullptr);
     Box<2> box({{23, fluid, {0, 0}}}, std::move(how));
     std::vector<Colloid<2>> colloids{{5, colloid, 1.0, 1.0}};
     std::vector<Vector<2>> forces(1);
@@ -376,6 +507,9 @@ int main()
   momentum_and_energy_are_kept();
   thermostats_reach_their_temperature();
   virtual_particles_have_the_right_variance();
+  walls_cut_the_rows_that_reach_beyond_them();
+  sliding_walls_drive_couette_flow();
+  fluid_thrown_by_a_wall_is_near();
   layers_are_sums();
   only_what_is_near_needs_integration();
   coupling_faults();
