@@ -8,6 +8,8 @@
 
 #include <mpi.h>
 
+#include <vector>
+
 namespace LAMMPS_NS {
 
 class MpiProcesses : public mpc::Processes {
@@ -36,6 +38,19 @@ class MpiProcesses : public mpc::Processes {
     pass(to_lower, neighbours[0], neighbours[1], received);
     pass(to_upper, neighbours[1], neighbours[0], received);
     return received;
+  }
+
+  // Records of all processes on all, process by process; for the few that colloids are.
+  template <class Record> std::vector<Record> everyones(const std::vector<Record> &mine) const
+  {
+    const int size = static_cast<int>(mine.size() * sizeof(Record));
+    std::vector<int> sizes(comm_.nprocs), starts(comm_.nprocs);
+    MPI_Allgather(&size, 1, MPI_INT, sizes.data(), 1, MPI_INT, world_);
+    for (int p = 1; p < comm_.nprocs; ++p) starts[p] = starts[p - 1] + sizes[p - 1];
+    std::vector<Record> all((starts.back() + sizes.back()) / sizeof(Record));
+    MPI_Allgatherv(mine.data(), size, MPI_BYTE, all.data(), sizes.data(), starts.data(), MPI_BYTE,
+                   world_);
+    return all;
   }
 
  private:

@@ -1,0 +1,42 @@
+// Where the fluid comes from and where it rests: created around the colloids, in files of its own,
+// and in the restart files of LAMMPS (docs/fix_mpc.md).
+
+#pragma once
+
+#include "core/solver.h"
+#include "mpc_arguments.h"
+#include "mpc_colloids.h"
+
+#include "pointers.h"
+
+#include <cstdio>
+#include <string>
+#include <vector>
+
+namespace LAMMPS_NS {
+
+template <int D> class MpcState : protected Pointers {
+ public:
+  MpcState(LAMMPS *, const MpcArguments<D> &, mpc::Solver<D> &);
+
+  // The cells of this process's sub-domain: lower <= cell < upper.
+  std::array<int, D> lower() const;
+  std::array<int, D> upper() const;
+
+  void create(const std::vector<mpc::Colloid<D>> &);
+  void load(const std::string &file);
+  void save(const std::string &file);
+
+  void write_restart(FILE *, const std::vector<Pull<D>> &of_all);
+  std::vector<Pull<D>> restart(const char *);    // this process's, of as many as there were
+
+ private:
+  std::array<int, D> bound(const double *corner) const;
+  mpc::FluidHeader fluid_header() const;
+  template <class Visit> void gather(const Visit &);
+
+  const MpcArguments<D> &given_;
+  mpc::Solver<D> &solver_;
+};
+
+}    // namespace LAMMPS_NS
