@@ -2,12 +2,14 @@
 
 from dataclasses import dataclass
 from pathlib import Path
+from typing import Protocol
 
 import numpy as np
 from numpy.typing import NDArray
 
 from lammps_inputs import Scene
-from lammps_inputs.deck import write_deck
+from lammps_inputs.deck import script, write_deck
+from lammps_inputs.deck_lines import Start
 from tests.conftest import Run
 
 Array = NDArray[np.float64]
@@ -23,6 +25,36 @@ class State:
     colloid_velocities: Array
 
 
+class HasState(Protocol):
+    """A `State`, or an engine that has one."""
+
+    @property
+    def fluid_positions(self) -> Array: ...
+    @property
+    def fluid_velocities(self) -> Array: ...
+    @property
+    def colloid_positions(self) -> Array: ...
+    @property
+    def colloid_velocities(self) -> Array: ...
+
+
+def largest_difference(one: HasState, other: HasState, scene: Scene) -> float:
+    """Of all coordinates and velocities, images taken as the same place."""
+    differences = []
+    for kind in ("fluid", "colloid"):
+        mine, theirs = (getattr(state, f"{kind}_positions") for state in (one, other))
+        assert len(mine) == len(theirs)
+        if not len(mine):
+            continue
+        apart = mine - theirs
+        for axis, (size, periodic) in enumerate(zip(scene.box, scene.periodic, strict=True)):
+            if periodic:
+                apart[:, axis] -= size * np.round(apart[:, axis] / size)
+        mine, theirs = (getattr(state, f"{kind}_velocities") for state in (one, other))
+        differences += [abs(apart).max(), abs(mine - theirs).max()]
+    return float(np.max(differences))  # NaN if there is one
+
+
 def read_fluid(file: Path) -> tuple[Array, Array]:
     """Positions and velocities (N, d) of a saved fluid, by particle number."""
     content = file.read_bytes()
@@ -34,11 +66,19 @@ def read_fluid(file: Path) -> tuple[Array, Array]:
 
 
 def run_mpc(
-    scene: Scene, collisions: int, folder: Path, command: Run, ranks: int = 1, end: str = ""
+    scene: Scene,
+    collisions: int,
+    folder: Path,
+    command: Run,
+    ranks: int = 1,
+    end: str = "",
+    start: Start | None = None,
 ) -> State:
     """The state after so many collisions of a deck for fix mpc, run by plain `lmp`."""
     folder.mkdir(exist_ok=True)
     write_deck(scene, folder, "mpc")
+    if start:
+        (folder / "in.lammps").write_text(script(scene, start, "mpc"))
     with (folder / "in.lammps").open("a") as deck:
         deck.write("fix_modify solvent save end.fluid\n")
         deck.write(
