@@ -6,6 +6,7 @@ differently, as in test_against_reference.py.
 
 from pathlib import Path
 
+import numpy as np
 import pytest
 
 from lammps_inputs import make_scene
@@ -50,3 +51,28 @@ def test_continues_on_other_processes(
     end = run_mpc(of, WHOLE, parts, command, after, start=Start(step, "half.restart"))
     assert largest_difference(half, end, of) > 0.1
     assert largest_difference(end, uninterrupted[scene], of) < TOLERANCE
+
+
+@pytest.mark.parametrize(
+    ("accident", "complaint"),
+    [
+        ("fix pull all addforce 1e6 0 0", "the choice of near fluid allows"),
+        ("displace_atoms all move 2.5 0 0", "inside its core: the time step is too long"),
+    ],
+)
+def test_a_fault_leaves_the_last_checkpoint_intact(
+    accident: str, complaint: str, tmp_path: Path, command: Run
+) -> None:
+    scene = SCENES["channel"]
+    whole = run_mpc(scene, 12, tmp_path, command)
+    deck = tmp_path / "in.lammps"
+    start, run, end = deck.read_text().partition("run ${steps} upto")
+    deck.write_text(f"{start}restart 60 checkpoint.*.restart\nrun 120 upto\n{accident}\n{run}{end}")
+    done = command("lmp", "-in", "in.lammps", "-var", "steps", "180", cwd=tmp_path, succeed=False)
+    assert done.returncode == 1
+    assert complaint in done.stdout
+    assert "fix mpc: step 12" in done.stdout  # 120, or soon after it
+
+    again = run_mpc(scene, 12, tmp_path, command, start=Start(120, "checkpoint.120.restart"))
+    for one, other in zip(vars(again).values(), vars(whole).values(), strict=True):
+        np.testing.assert_array_equal(one, other)
