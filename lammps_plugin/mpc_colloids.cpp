@@ -51,7 +51,8 @@ template <int D> void MpcColloids<D>::see(const mpc::Coupling<D> &coupling, doub
   for (int i = 0; i < atom->nlocal + atom->nghost; ++i) {
     if (!is_colloid(i)) continue;
     const auto &interaction = given_.interactions.at(atom->type[i]);
-    seen_.push_back({static_cast<double>(atom->tag[i]), {}, interaction.epsilon, interaction.sigma});
+    seen_.push_back(
+        {static_cast<double>(atom->tag[i]), {}, interaction.epsilon, interaction.sigma});
     atoms_.push_back(i);
     sigma = std::max(sigma, interaction.sigma);
     if (i >= atom->nlocal) continue;

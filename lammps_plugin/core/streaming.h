@@ -70,7 +70,8 @@ struct TooManyBounces {
 // Move particles begin ... end - 1 for a time, between walls if there are any (3.3, 3.51).
 template <int D, class Acceleration>
 void stream(const std::array<double *, D> &positions, const std::array<double *, D> &velocities,
-            const Acceleration &acceleration, double time, const Walls<D> *walls, int begin, int end)
+            const Acceleration &acceleration, double time, const Walls<D> *walls, int begin,
+            int end)
 {
   static thread_local std::vector<std::pair<int, std::array<Vector<D>, 2>>> bounced;
   bounced.clear();

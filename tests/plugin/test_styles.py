@@ -219,7 +219,7 @@ def test_a_fault_stops_with_step_particle_and_cause(
 @pytest.mark.parametrize("command", ["write_restart half", "fix_modify fluid save half"])
 def test_between_two_collisions_nothing_is_written(lammps: Commands, command: str) -> None:
     lammps(slit(COLLOID) + MOVING.format(fluid="create 600").replace("run 50", "run 52"))
-    with pytest.raises(Exception, match="the step.* must be a multiple of N = 5"):
+    with pytest.raises(Exception, match=r"the step.* must be a multiple of N = 5"):
         lammps(command)
     lammps(f"run 3\n{command}")
 
