@@ -239,9 +239,7 @@ template <int D> class Solver {
       stream<D>(x, v, Field<D>{method_.field}, method_.interval, method_.walls.get(), begin,
                 end);
     } catch (const TooManyBounces &bounces) {
-      throw Fault("fluid particle " + std::to_string(fluid_.id[bounces.index]) +
-                  " meets the walls more than " + std::to_string(MOST_BOUNCES) +
-                  " times in one step: it is too fast, or pressed against a wall");
+      throw bounces.fault(fluid_.id[bounces.index]);
     }
   }
 

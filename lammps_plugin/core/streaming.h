@@ -65,6 +65,13 @@ template <int D> struct PerParticle {
 // Thrown for a particle that meets the walls more than MOST_BOUNCES times.
 struct TooManyBounces {
   int index;
+
+  static Fault fault(std::uint32_t id)
+  {
+    return Fault("fluid particle " + std::to_string(id) + " meets the walls more than " +
+                 std::to_string(MOST_BOUNCES) +
+                 " times in one step: it is too fast, or pressed against a wall");
+  }
 };
 
 // Move particles begin ... end - 1 for a time, between walls if there are any (3.3, 3.51).

@@ -163,6 +163,20 @@ void a_lost_particle_is_named()
   }
 }
 
+// From y = 1 at v_y = 1e4 the walls at 0 and 4 are met 250 times in 0.1.
+void a_particle_that_meets_the_walls_too_often_is_named()
+{
+  auto how = method<2>();
+  how.walls = std::make_unique<NoSlipWalls<2>>(4, 10, 1.0);
+  Box<2> box({{0, {1, 1}, {0, 0}}, {17, {2, 1}, {0, 1e4}}}, std::move(how));
+  try {
+    box.collide();
+    CHECK(false);
+  } catch (const Fault &fault) {
+    CHECK(std::string(fault.what()).find("fluid particle 17 meets the walls") == 0);
+  }
+}
+
 void the_permutation_is_one()
 {
   for (int count : {1, 2, 5, 16, 17, 1000}) {
@@ -503,6 +517,7 @@ int main()
   bounce_back_reverses();
   wrapping_keeps_particles_in_the_box();
   a_lost_particle_is_named();
+  a_particle_that_meets_the_walls_too_often_is_named();
   the_permutation_is_one();
   momentum_and_energy_are_kept();
   thermostats_reach_their_temperature();
