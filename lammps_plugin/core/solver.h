@@ -393,14 +393,16 @@ template <int D> class Solver {
 
   void make_turns(const CounterRandom &random)
   {
-    const auto *walls = method_.walls.get();
     grid_.each_cell([&](int cell, const std::array<int, D> &rows) {
-      const auto &sum = sums_[cell];
-      const auto number = grid_.number(rows);
-      const auto wall = walls ? walls->cutting(grid_, rows[1]) : std::nullopt;
-      const auto mean = wall ? walls->mean_of_cut(*wall, sum, random, number) : sum.mean();
-      method_.rotation.draw(random, number, turns_[cell]);
-      fix_point<D>(turns_[cell], mean);
+      method_.rotation.draw(random, grid_.number(rows), turns_[cell]);
+      fix_point<D>(turns_[cell], sums_[cell].mean());
+    });
+    if (!method_.walls) return;
+    const auto &walls = *method_.walls;
+    grid_.each_cell([&](int cell, const std::array<int, D> &rows) {
+      if (const auto wall = walls.cutting(grid_, rows[1]))
+        fix_point<D>(turns_[cell],
+                     walls.mean_of_cut(*wall, sums_[cell], random, grid_.number(rows)));
     });
   }
 
