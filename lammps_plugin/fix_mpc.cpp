@@ -181,7 +181,8 @@ template <int D> void FixMPC<D>::final_integrate()
 
 template <int D> void FixMPC<D>::end_of_step()
 {
-  guarded([&] { solver_->end_interval(); });
+  colloids_.follow();
+  guarded([&] { solver_->end_interval(colloids_.seen()); });
   open_ = false;
   if (!given_.interactions.empty()) {
     colloids_.remember_pulls();

@@ -30,14 +30,25 @@ template <int D> bool MpcColloids<D>::is_colloid(int i) const
   return (atom->mask[i] & given_.colloid_bit) && given_.interactions.count(atom->type[i]);
 }
 
+template <int D> Colloid<D> MpcColloids<D>::colloid(int i) const
+{
+  const auto &interaction = given_.interactions.at(atom->type[i]);
+  const double mass = atom->rmass ? atom->rmass[i] : atom->mass[atom->type[i]];
+  const auto id = static_cast<double>(atom->tag[i]);
+  Colloid<D> colloid{id, {}, {}, mass, interaction.epsilon, interaction.sigma};
+  for (int a = 0; a < D; ++a) {
+    colloid.x[a] = atom->x[i][a] - domain->boxlo[a];
+    colloid.v[a] = atom->v[i][a];
+  }
+  return colloid;
+}
+
 template <int D> std::vector<Colloid<D>> MpcColloids<D>::all() const
 {
   std::vector<Colloid<D>> mine;
   for (int i = 0; i < atom->nlocal; ++i) {
     if (!is_colloid(i)) continue;
-    const auto &interaction = given_.interactions.at(atom->type[i]);
-    mine.push_back({static_cast<double>(atom->tag[i]), {}, interaction.epsilon, interaction.sigma});
-    for (int a = 0; a < D; ++a) mine.back().x[a] = atom->x[i][a] - domain->boxlo[a];
+    mine.push_back(colloid(i));
   }
   return processes_.everyones(mine);
 }
@@ -50,19 +61,13 @@ template <int D> void MpcColloids<D>::see(const mpc::Coupling<D> &coupling, doub
   double sigma = 0;
   for (int i = 0; i < atom->nlocal + atom->nghost; ++i) {
     if (!is_colloid(i)) continue;
-    const auto &interaction = given_.interactions.at(atom->type[i]);
-    seen_.push_back(
-        {static_cast<double>(atom->tag[i]), {}, interaction.epsilon, interaction.sigma});
+    const auto &seen = seen_.emplace_back(colloid(i));
     atoms_.push_back(i);
-    sigma = std::max(sigma, interaction.sigma);
+    sigma = std::max(sigma, seen.sigma);
     if (i >= atom->nlocal) continue;
-    double speed = 0;
-    for (int a = 0; a < D; ++a) speed += atom->v[i][a] * atom->v[i][a];
-    const double mass = atom->rmass ? atom->rmass[i] : atom->mass[atom->type[i]];
-    bounds[0] = std::max(bounds[0], speed);
-    bounds[1] = std::max(bounds[1], 1 / mass);
+    bounds[0] = std::max(bounds[0], mpc::square<D>(seen.v));
+    bounds[1] = std::max(bounds[1], 1 / seen.mass);
   }
-  read();
   forces_.resize(seen_.size());
   if (comm->nprocs > 1) MPI_Allreduce(MPI_IN_PLACE, bounds, 2, MPI_DOUBLE, MPI_MAX, world);
   speed_ = std::sqrt(bounds[0]) + SPEED_MARGIN * std::sqrt(given_.temperature * bounds[1]);
@@ -81,7 +86,10 @@ template <int D> void MpcColloids<D>::read()
 {
   for (std::size_t s = 0; s < seen_.size(); ++s)
     if (atoms_[s] >= 0)
-      for (int a = 0; a < D; ++a) seen_[s].x[a] = atom->x[atoms_[s]][a] - domain->boxlo[a];
+      for (int a = 0; a < D; ++a) {
+        seen_[s].x[a] = atom->x[atoms_[s]][a] - domain->boxlo[a];
+        seen_[s].v[a] = atom->v[atoms_[s]][a];
+      }
 }
 
 template <int D> void MpcColloids<D>::follow()

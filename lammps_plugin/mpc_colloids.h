@@ -48,6 +48,7 @@ template <int D> class MpcColloids : protected Pointers {
 
  private:
   bool is_colloid(int atom) const;
+  mpc::Colloid<D> colloid(int atom) const;    // the velocity of a ghost only with comm_modify vel yes
   void read();
   int atom_at(double id, const mpc::Vector<D> &, double distance) const;
 

@@ -2,18 +2,20 @@
 //
 // An interval is the time between two collisions. At its beginning the coupling takes the particles
 // that it will move itself, at every MD step; all others fly free through the whole interval at
-// once. At its end it gives them back.
+// once. At its end it gives them back. Colloids may take part in the collision themselves; what they
+// gain there is a force on them in the MD step after it.
 
 #pragma once
 
-#include "fluid.h"
+#include "collision.h"
 
 namespace mpc {
 
 // A colloid, or an image of one, that this process sees.
 template <int D> struct Colloid {
   double id;
-  Vector<D> x;
+  Vector<D> x, v;
+  double mass;
   double epsilon, sigma;    // of its interaction with the fluid
 };
 
@@ -39,6 +41,10 @@ template <int D> class Coupling {
   virtual void kick(double time) = 0;
 
   virtual void give_back(Fluid<D> &) = 0;
+
+  // The collision, in this process's cells: join their sums, then do as their turns say.
+  virtual void join(const Grid<D> &, const std::vector<Colloid<D>> &, Array<CellSum<D>> &) {}
+  virtual void turn(const Array<Turn<D>> &) {}
 };
 
 }    // namespace mpc

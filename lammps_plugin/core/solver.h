@@ -138,7 +138,7 @@ template <int D> class Solver {
     if (coupling) coupling->ready();
   }
 
-  void end_interval()
+  void end_interval(const std::vector<Colloid<D>> &colloids = {})
   {
     if (auto *coupling = method_.coupling.get()) {
       coupling->give_back(fluid_);
@@ -153,7 +153,7 @@ template <int D> class Solver {
       fluid_.remove(i);
     }
     migrate();
-    collide();
+    collide(colloids);
   }
 
   // In bytes, on this process.
@@ -367,12 +367,14 @@ template <int D> class Solver {
     return down < up;
   }
 
-  void collide()
+  void collide(const std::vector<Colloid<D>> &colloids)
   {
     const CounterRandom random{method_.seed, collisions_};
+    auto *coupling = method_.coupling.get();
     auto *solvent = method_.random_solvent.get();
     auto *thermostat = method_.thermostat.get();
     if (!solvent || !solvent->replaces_collision()) {
+      if (coupling) coupling->join(grid_, colloids, sums_);
       make_turns(random);
       turning_ = true;
       if (thermostat) {
@@ -383,6 +385,7 @@ template <int D> class Solver {
           thermostat->redraw(fluid_, random);
         }
       }
+      if (coupling) coupling->turn(turns_);
     }
     if (solvent) {
       turn();

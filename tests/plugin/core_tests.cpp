@@ -7,6 +7,7 @@
 #include "solver.h"
 
 #include <cstdio>
+#include <utility>
 
 using namespace mpc;
 
@@ -66,7 +67,7 @@ template <int D> struct Box {
   void collide(const std::vector<Colloid<D>> &colloids = {})
   {
     solver->begin_interval(colloids, 0.0);
-    solver->end_interval();
+    solver->end_interval(colloids);
     solver->turn();
   }
 };
@@ -388,7 +389,7 @@ void fluid_thrown_by_a_wall_is_near()
     how.coupling =
         std::make_unique<ForceCoupling<2>>(0.1, 1.0, Vector<2>{}, how.walls.get());
     Box<2> box({{0, {1, 3.99}, {0, 1}}}, std::move(how));
-    box.solver->begin_interval({{0, {3, 3.5}, 1.0, 1.0}}, 0.0);
+    box.solver->begin_interval({{0, {3, 3.5}, {}, 1.0, 1.0, 1.0}}, 0.0);
     CHECK(box.solver->coupling()->taken().size() == (speed > 0));
   }
 }
@@ -417,7 +418,7 @@ void only_what_is_near_needs_integration()
   auto how = method<2>(interval);
   how.coupling = std::make_unique<ForceCoupling<2>>(interval, 1.0, Vector<2>{}, nullptr);
   Box<2> box(particles, std::move(how));
-  std::vector<Colloid<2>> colloids{{0, {2, 2}, 1.0, sigma}};
+  std::vector<Colloid<2>> colloids{{0, {2, 2}, {}, 1.0, 1.0, sigma}};
   std::vector<Vector<2>> forces(1);
   box.solver->begin_interval(colloids, 0.1);
   auto &coupling = *box.solver->coupling();
@@ -458,6 +459,75 @@ void only_what_is_near_needs_integration()
   }
 }
 
+// A colloid of mass M counts as M particles of its cell (hecht-2005, section V).
+class InTheCell : public Coupling<2> {
+ public:
+  double reach(double) const override { return 0; }
+  void begin(const Grid<2> &, const std::vector<Colloid<2>> &, double) override {}
+  void take(const Fluid<2> &, int, int) override {}
+  const std::vector<int> &taken() const override { return none_; }
+  void ready() override {}
+  void drift(double) override {}
+  void kick(double) override {}
+  void give_back(Fluid<2> &) override {}
+
+  void join(const Grid<2> &grid, const std::vector<Colloid<2>> &colloids,
+            Array<CellSum<2>> &sums) override
+  {
+    colloid_ = colloids[0];
+    cell_ = grid.local(colloid_.x);
+    const auto &v = colloid_.v;
+    sums[cell_].momentum += colloid_.mass * pack(v[0], v[1]);
+    sums[cell_].squares_and_count += colloid_.mass * pack(square<2>(v), 1);
+  }
+
+  void turn(const Array<Turn<2>> &turns) override
+  {
+    const auto after = turns[cell_].apply(colloid_.v);
+    for (int a = 0; a < 2; ++a) impulse_[a] = colloid_.mass * (after[a] - colloid_.v[a]);
+  }
+
+  // in a step of 1
+  void forces(const std::vector<Colloid<2>> &, std::vector<Vector<2>> &on_colloids) override
+  {
+    on_colloids[0] = std::exchange(impulse_, {});
+  }
+
+ private:
+  std::vector<int> none_;
+  Colloid<2> colloid_{};
+  int cell_ = 0;
+  Vector<2> impulse_{};
+};
+
+void colloids_may_take_part_in_the_collision()
+{
+  auto how = method<2>();
+  how.coupling = std::make_unique<InTheCell>();
+  Box<2> box(many<2>(160), std::move(how));
+  std::vector<Colloid<2>> colloids{{0, {1.3, 2.2}, {0.5, -1}, 20.0, 1.0, 1.0}};
+  auto &v = colloids[0].v;
+  const auto totals = [&] {
+    auto sum = box.solver->momentum();
+    double squares = 20 * square<2>(v);
+    for (const auto &component : box.solver->fluid().v)
+      for (double each : component) squares += each * each;
+    return std::array<double, 3>{sum[0] + 20 * v[0], sum[1] + 20 * v[1], squares};
+  };
+  const auto before = totals();
+  const auto first = v;
+  for (int k = 0; k < 10; ++k) {
+    box.solver->begin_interval(colloids, 0);
+    box.solver->end_interval(colloids);
+    std::vector<Vector<2>> force(1);
+    box.solver->coupling()->forces(colloids, force);
+    for (int a = 0; a < 2; ++a) v[a] += force[0][a] / 20;
+  }
+  const auto after = totals();
+  for (int k = 0; k < 3; ++k) CHECK(close(after[k], before[k], 1e-11));
+  CHECK(!close(v[0], first[0], 0.01));
+}
+
 // Action is reaction, through the periodic boundary too, and what is too deep or too far is named.
 void coupling_faults()
 {
@@ -465,7 +535,7 @@ void coupling_faults()
     auto how = method<2>(0.1);
     how.coupling = std::make_unique<ForceCoupling<2>>(0.1, 1.0, Vector<2>{}, nullptr);
     Box<2> box({{23, fluid, {0, 0}}}, std::move(how));
-    std::vector<Colloid<2>> colloids{{5, colloid, 1.0, 1.0}};
+    std::vector<Colloid<2>> colloids{{5, colloid, {}, 1.0, 1.0, 1.0}};
     std::vector<Vector<2>> forces(1);
     try {
       box.solver->begin_interval(colloids, 1.0);
@@ -528,6 +598,7 @@ int main()
   layers_are_sums();
   only_what_is_near_needs_integration();
   coupling_faults();
+  colloids_may_take_part_in_the_collision();
   memory_per_particle<2>(100, 80);
   memory_per_particle<3>(22, 112);
   std::printf("%d failures\n", failures);
