@@ -77,8 +77,8 @@ def reopen(scene: Scene, engine: Engine, directory: Path, ranks: int) -> Progres
     Raises:
         RunError: when the directory holds no run, or one of another scene or engine.
     """
-    _refuse_another_scene(scene, engine, directory)
-    progress = Progress(**_read_json(directory / "progress.json", directory))
+    refuse_another_scene(scene, engine, directory)
+    progress = read_progress(directory)
     if progress.checkpoint and not (directory / progress.checkpoint).exists():
         raise RunError(f"{directory}: its checkpoint {progress.checkpoint} is missing")
     if progress.step < scene.total_steps:
@@ -94,6 +94,36 @@ def reopen(scene: Scene, engine: Engine, directory: Path, ranks: int) -> Progres
         except OSError as error:
             raise RunError(f"cannot write {directory}: {error.strerror or error}") from None
     return progress
+
+
+def is_begun(directory: Path) -> bool:
+    """Whether the directory holds a run; not so one that was killed while it was made."""
+    return (directory / "progress.json").is_file()
+
+
+def read_progress(directory: Path) -> Progress:
+    """How far the run in the directory is for sure: its newest checkpoint.
+
+    Raises:
+        RunError: when the directory holds no run.
+    """
+    return Progress(**_read_json(directory / "progress.json", directory))
+
+
+def newest_step(directory: Path) -> int:
+    """The last step that the run in the directory has written of, after its newest checkpoint.
+
+    Raises:
+        RunError: when the directory holds no run.
+    """
+    step = read_progress(directory).step
+    try:
+        with (directory / "observables.dat").open("rb") as file:
+            file.seek(max(0, os.fstat(file.fileno()).st_size - 1024))
+            rows = file.read().split(b"\n")[1:-1]  # what lies between two line ends is whole
+    except FileNotFoundError:
+        return step
+    return max([step, *(int(row.split()[0]) for row in rows[-1:] if not row.startswith(b"#"))])
 
 
 def write_progress(directory: Path, progress: Progress) -> Progress:
@@ -159,7 +189,12 @@ def _first_row(path: Path, step: int) -> int:
     return path.stat().st_size
 
 
-def _refuse_another_scene(scene: Scene, engine: Engine, directory: Path) -> None:
+def refuse_another_scene(scene: Scene, engine: Engine, directory: Path) -> None:
+    """Let only the scene and engine of a run directory pass; its duration may change.
+
+    Raises:
+        RunError: when the directory holds no run, or one of another scene or engine.
+    """
     stored = stored_fields(directory)
     if stored.pop("scene", None) != scene.name:
         raise RunError(f"{directory} holds another scene than {scene.name}")
