@@ -1,7 +1,11 @@
 """`narrows deck` and `narrows run`: a scene to a LAMMPS deck, or to a run directory."""
 
+import signal
 import sys
+from collections.abc import Iterator
+from contextlib import contextmanager
 from pathlib import Path
+from types import FrameType
 from typing import Annotated, Any, Literal
 
 import typer
@@ -13,7 +17,7 @@ from lammps_inputs.deck import Engine, write_deck
 from narrows.messages import say, user_errors
 from srd_driver import RunError, Simulation
 from srd_driver.parallel import agree, communicator
-from srd_driver.run_directory import stored_engine, stored_fields
+from srd_driver.run_directory import is_half_made, stored_engine, stored_fields
 
 SceneName = Annotated[str, typer.Argument(metavar="SCENE", help=" or ".join(SCENES))]
 SceneFile = Annotated[
@@ -63,7 +67,10 @@ def run(
         )
         chosen = _scene(scene, stored, file, settings)
         engine = engine or engine_before or "srd"
-        with Simulation(chosen, engine, out, resume, checkpoint_interval) as simulation:
+        with (
+            Simulation(chosen, engine, out, resume, checkpoint_interval) as simulation,
+            _stopped_by_signals(simulation),
+        ):
             if simulation.finished:
                 say(f"{out}: finished before, at time {simulation.time:g}")
                 return
@@ -73,12 +80,31 @@ def run(
                 _finish_with_progress_bar(simulation)
             else:
                 simulation.finish()
+            if not simulation.finished:
+                raise KeyboardInterrupt
             say(f"{out}: at time {simulation.time:g}; next: narrows analyze {out}")
+
+
+@contextmanager
+def _stopped_by_signals(simulation: Simulation) -> Iterator[None]:
+    """Ctrl-C, or a queueing system's SIGTERM: a checkpoint, then the end; a second one: at once."""
+
+    def stop(number: int, _: FrameType | None) -> None:
+        signal.signal(number, before[number])
+        simulation.stop()
+
+    numbers: tuple[int, ...] = (signal.SIGINT, signal.SIGTERM)
+    before = {number: signal.signal(number, stop) for number in numbers}
+    try:
+        yield
+    finally:
+        for number, handler in before.items():
+            signal.signal(number, handler)
 
 
 def _stored(directory: Path) -> tuple[dict[str, Any], Engine | None]:
     """Fields and engine of the run to resume, if there is one."""
-    if not directory.is_dir() or not any(directory.iterdir()):
+    if not directory.is_dir() or not any(directory.iterdir()) or is_half_made(directory):
         return {}, None
     return stored_fields(directory), stored_engine(directory)
 
