@@ -112,12 +112,18 @@ def _stored(directory: Path) -> tuple[dict[str, Any], Engine | None]:
 def _scene(
     name: str, stored: dict[str, Any], file: Path | None, settings: list[str] | None
 ) -> Scene:
-    """The scene from its stored fields, the file and the settings, the later ones winning."""
+    return make_scene(name, **scene_fields(name, stored, file, settings))
+
+
+def scene_fields(
+    name: str, stored: dict[str, Any], file: Path | None, settings: list[str] | None
+) -> dict[str, Any]:
+    """The stored fields, those of the file and the settings, the later ones winning."""
     fields = stored | (read_scene(file) if file else {})
     fields |= dict(parse_assignment(text) for text in settings or [])
     if fields.get("scene", name) != name:
         raise SceneError([f"scene = {fields['scene']!r}: the command line says {name!r}"])
-    return make_scene(name, **{field: fields[field] for field in fields if field != "scene"})
+    return {field: fields[field] for field in fields if field != "scene"}
 
 
 def _finish_with_progress_bar(simulation: Simulation) -> None:

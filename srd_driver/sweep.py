@@ -5,6 +5,7 @@ a kill, by another command or by a queueing system: finished ones are skipped, h
 """
 
 import os
+import signal
 import subprocess
 import sys
 import time as clock
@@ -16,6 +17,7 @@ from lammps_inputs import Scene
 from lammps_inputs.deck import Engine
 from srd_driver import run_directory
 from srd_driver.run_directory import CHANGEABLE
+from srd_driver.run_lock import is_locked
 
 POLL_SECONDS = 0.2
 
@@ -31,7 +33,7 @@ class Run:
 
 @dataclass(frozen=True)
 class Failure:
-    """A run that stopped, and why; `message` names its log."""
+    """A run that stopped, and why; `message` names the file of its output."""
 
     run: Run
     message: str
@@ -78,6 +80,13 @@ def command(run: Run) -> list[str]:
     ]
 
 
+def available_cores() -> int:
+    """Cores that this process may use."""
+    if hasattr(os, "sched_getaffinity"):
+        return len(os.sched_getaffinity(0))
+    return os.cpu_count() or 1
+
+
 def run_all(
     runs: Sequence[Run], jobs: int, report: Callable[[Advance], None] | None = None
 ) -> list[Failure]:
@@ -85,38 +94,39 @@ def run_all(
 
     A run that stops with an error does not stop the others. A run that another process has taken
     up is waited for. An interrupt (KeyboardInterrupt) lets the running ones write a checkpoint
-    first. `report` is called several times a second.
+    first; a second one kills them. `report` is called several times a second.
 
     Raises:
         RunError: before anything runs, when a run directory holds another scene or engine.
     """
+    runs = list(dict.fromkeys(runs))
     waiting = [run for run in runs if not is_finished(run)]
-    finished, failures = len(runs) - len(waiting), list[Failure]()
-    running: list[tuple[Run, subprocess.Popen[bytes]]] = []
+    failures: list[Failure] = []
+    running: dict[Run, subprocess.Popen[bytes]] = {}
     try:
         while waiting or running:
-            while waiting and len(running) < jobs:
-                run = waiting.pop(0)
-                running.append((run, _start(run)))
-            for run, process in list(running):
-                if process.poll() is None:
-                    continue
-                running.remove((run, process))
-                if process.returncode == 0:
+            while len(running) < jobs and (run := _next(waiting)):
+                waiting.remove(run)
+                if not is_finished(run):  # another process may have done it
+                    running[run] = _start(run)
+            for run in [run for run in running if running[run].poll() is not None]:
+                code = running.pop(run).returncode
+                if code == 0:
                     _log(run).unlink(missing_ok=True)
-                    finished += 1
+                elif is_locked(run.folder):  # another process was quicker
+                    waiting.append(run)
                 else:
-                    failures.append(Failure(run, _message(run, process.returncode)))
+                    failures.append(_failure(run, code))
             if report:
-                work = _work_done(runs)
-                report(Advance(work, finished, len(failures), len(running), len(runs)))
+                report(_advance(runs, [*waiting, *running], failures, len(running)))
             clock.sleep(POLL_SECONDS)
     finally:
-        for _, process in running:
-            process.terminate()
-        for _, process in running:
-            process.wait()
+        _stop(running)
     return failures
+
+
+def _next(waiting: list[Run]) -> Run | None:
+    return next((run for run in waiting if not is_locked(run.folder)), None)
 
 
 def _start(run: Run) -> subprocess.Popen[bytes]:
@@ -138,20 +148,48 @@ def _log(run: Run) -> Path:
     return run.folder.with_name(run.folder.name + ".log")
 
 
-def _message(run: Run, code: int) -> str:
-    lines = _log(run).read_text(encoding="utf-8", errors="replace").strip().splitlines()
-    reason = lines[-1].removeprefix("narrows: ") if lines else "no message"
+def _stop(running: dict[Run, subprocess.Popen[bytes]]) -> None:
+    """Let the processes write a checkpoint and end; a second interrupt kills them."""
+    for process in running.values():
+        process.terminate()
+    try:
+        for process in running.values():
+            process.wait()
+    except KeyboardInterrupt:
+        for process in running.values():
+            process.kill()
+            process.wait()
+        raise
+    finally:
+        for run in running:
+            _log(run).unlink(missing_ok=True)
+
+
+def _failure(run: Run, code: int) -> Failure:
+    """Why the process of the run ended; kept in the run directory too, if that was made."""
+    said = _log(run).read_text(encoding="utf-8", errors="replace").strip()
     if code < 0:
-        reason = f"killed by signal {-code}"
-    return f"{reason} (log: {_log(run)})"
+        reason = f"killed by {signal.Signals(-code).name}"
+    elif "narrows: " in said:
+        reason = " ".join(said.rpartition("narrows: ")[2].split())
+    else:
+        reason = said.splitlines()[-1] if said else f"exit code {code}"
+    if run_directory.is_begun(run.folder):
+        run_directory.write_failure(run.folder, reason)
+    return Failure(run, f"{reason} (its output: {_log(run)})")
 
 
-def _work_done(runs: Sequence[Run]) -> float:
-    total = done = 0.0
-    for run in runs:
-        work = run.scene.fluid_particles * run.scene.collisions
-        total += work
-        if run_directory.is_begun(run.folder):
-            step = run_directory.newest_step(run.folder)
-            done += work * min(1.0, step / run.scene.total_steps)
-    return done / total
+def _advance(
+    runs: Sequence[Run], unfinished: Sequence[Run], failures: Sequence[Failure], running: int
+) -> Advance:
+    work = {run: run.scene.fluid_particles * run.scene.collisions for run in runs}
+    open_runs = [*unfinished, *(failure.run for failure in failures)]
+    left = sum(work[run] * (1 - _fraction(run)) for run in open_runs)
+    finished = len(runs) - len(open_runs)
+    return Advance(1 - left / sum(work.values()), finished, len(failures), running, len(runs))
+
+
+def _fraction(run: Run) -> float:
+    if not run_directory.is_begun(run.folder):
+        return 0.0
+    return min(1.0, run_directory.newest_step(run.folder) / run.scene.total_steps)
