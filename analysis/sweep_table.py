@@ -5,8 +5,9 @@ import json
 import math
 import os
 import signal
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from concurrent.futures import Future, ProcessPoolExecutor, as_completed
+from contextlib import contextmanager
 from dataclasses import dataclass
 from multiprocessing import get_context
 from pathlib import Path
@@ -140,12 +141,10 @@ def _analyse(
     problems: dict[Path, str] = {}
     if not paths:
         return problems
-    # spawned, because MPI may be initialised here; Ctrl-C is handled here alone
-    pool = ProcessPoolExecutor(
-        min(jobs, len(paths)), get_context("spawn"), signal.signal, (signal.SIGINT, signal.SIG_IGN)
-    )
-    with pool:
-        tasks: dict[Future[Any], Path] = {pool.submit(analyze, path): path for path in paths}
+    # spawned, because MPI may be initialised here
+    with ProcessPoolExecutor(min(jobs, len(paths)), get_context("spawn")) as pool:
+        with _ctrl_c_held():
+            tasks: dict[Future[Any], Path] = {pool.submit(analyze, path): path for path in paths}
         try:
             for done, task in enumerate(as_completed(tasks), start=1):
                 error = task.exception()
@@ -159,6 +158,16 @@ def _analyse(
             pool.shutdown(wait=False, cancel_futures=True)
             raise
     return problems
+
+
+@contextmanager
+def _ctrl_c_held() -> Iterator[None]:
+    """Processes started in here never see Ctrl-C: this one handles it for them, afterwards."""
+    before = signal.pthread_sigmask(signal.SIG_BLOCK, {signal.SIGINT})
+    try:
+        yield
+    finally:
+        signal.pthread_sigmask(signal.SIG_SETMASK, before)
 
 
 def _columns(over: Sequence[str], fields: Sequence[Mapping[str, Any]]) -> list[str]:

@@ -29,7 +29,8 @@ def user_errors() -> Iterator[None]:
         _complain(str(error))
         raise typer.Exit(1) from None
     except KeyboardInterrupt as interrupt:
-        _complain(f"interrupted: {interrupt or 'go on from the newest checkpoint by --resume'}")
+        advice = str(interrupt) or "go on from the newest checkpoint by --resume"
+        _complain(f"interrupted: {advice}")
         raise typer.Exit(130) from None
 
 

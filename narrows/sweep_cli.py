@@ -18,6 +18,7 @@ from lammps_inputs.deck import Engine
 from narrows.messages import say, user_errors
 from narrows.run_cli import SceneFile, SceneName, Settings, scene_fields
 from srd_driver import RunError, sweep_definition
+from srd_driver.parallel import communicator
 from srd_driver.status import Status, status_of, stored_run
 from srd_driver.sweep import Advance, available_cores, command, is_finished, run_all
 from srd_driver.sweep_definition import Sweep
@@ -54,6 +55,8 @@ def sweep(
 ) -> None:
     """Run a scene at all combinations of field values; again, to go on or to extend it."""
     with user_errors():
+        if communicator().size > 1:
+            raise RunError("a sweep starts a process for each run itself: give it without mpirun")
         asked = sweep_definition.plan(
             out, scene, _fixed(scene, file, settings, over), _lists(over), repeats, engine
         )
@@ -128,9 +131,9 @@ def _write_commands(asked: Sweep, file: Path) -> None:
 
 
 def _execute(asked: Sweep, jobs: int) -> None:
-    from analysis import tabulate  # here, so that `narrows --help` stays fast
-
     try:
+        from analysis import tabulate  # here, so that `narrows --help` stays fast
+
         with _interrupted_by_signals(), _progress_bar() as (report_runs, report_analysis):
             failures = run_all(asked.runs, jobs, report_runs)
             table = tabulate(asked.directory, jobs, renew=False, report=report_analysis)
@@ -145,7 +148,7 @@ def _execute(asked: Sweep, jobs: int) -> None:
     )
     problems = [f"{failure.run.folder.name}: {failure.message}" for failure in failures]
     if problems or table.problems:
-        raise RunError("\nnarrows: ".join(problems + table.problems))
+        raise RunError("\n".join(problems + table.problems))
 
 
 @contextmanager

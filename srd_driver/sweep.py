@@ -20,6 +20,7 @@ from srd_driver.run_directory import CHANGEABLE
 from srd_driver.run_lock import is_locked
 
 POLL_SECONDS = 0.2
+LAUNCHER = ("PMI_", "PMIX_")  # by which mpirun or srun would claim our processes for its job
 
 
 @dataclass(frozen=True)
@@ -113,7 +114,7 @@ def run_all(
                 code = running.pop(run).returncode
                 if code == 0:
                     _log(run).unlink(missing_ok=True)
-                elif is_locked(run.folder):  # another process was quicker
+                elif is_locked(run.folder) or is_finished(run):  # another process was quicker
                     waiting.append(run)
                 else:
                     failures.append(_failure(run, code))
@@ -131,6 +132,7 @@ def _next(waiting: list[Run]) -> Run | None:
 
 def _start(run: Run) -> subprocess.Popen[bytes]:
     run.folder.parent.mkdir(parents=True, exist_ok=True)
+    alone = {name: value for name, value in os.environ.items() if not name.startswith(LAUNCHER)}
     one_core = {"OMP_NUM_THREADS": "1", "NUMBA_NUM_THREADS": "1"}
     with _log(run).open("wb") as log:
         return subprocess.Popen(
@@ -138,7 +140,7 @@ def _start(run: Run) -> subprocess.Popen[bytes]:
             stdin=subprocess.DEVNULL,
             stdout=log,
             stderr=subprocess.STDOUT,
-            env=os.environ | one_core,
+            env=alone | one_core,
             start_new_session=True,  # Ctrl-C reaches it through us only
         )
 
@@ -167,7 +169,8 @@ def _stop(running: dict[Run, subprocess.Popen[bytes]]) -> None:
 
 def _failure(run: Run, code: int) -> Failure:
     """Why the process of the run ended; kept in the run directory too, if that was made."""
-    said = _log(run).read_text(encoding="utf-8", errors="replace").strip()
+    log = _log(run)
+    said = log.read_text(encoding="utf-8", errors="replace").strip() if log.exists() else ""
     if code < 0:
         reason = f"killed by {signal.Signals(-code).name}"
     elif "narrows: " in said:
@@ -176,7 +179,7 @@ def _failure(run: Run, code: int) -> Failure:
         reason = said.splitlines()[-1] if said else f"exit code {code}"
     if run_directory.is_begun(run.folder):
         run_directory.write_failure(run.folder, reason)
-    return Failure(run, f"{reason} (its output: {_log(run)})")
+    return Failure(run, f"{reason} (its output: {log})")
 
 
 def _advance(
