@@ -134,7 +134,7 @@ def _execute(asked: Sweep, jobs: int) -> None:
     try:
         from analysis import tabulate  # here, so that `narrows --help` stays fast
 
-        with _interrupted_by_signals(), _progress_bar() as (report_runs, report_analysis):
+        with interrupted_by_signals(), progress_bar() as (report_runs, report_analysis):
             failures = run_all(asked.runs, jobs, report_runs)
             table = tabulate(asked.directory, jobs, renew=False, report=report_analysis)
     except KeyboardInterrupt:
@@ -152,7 +152,7 @@ def _execute(asked: Sweep, jobs: int) -> None:
 
 
 @contextmanager
-def _interrupted_by_signals() -> Iterator[None]:
+def interrupted_by_signals() -> Iterator[None]:
     """A queueing system's SIGTERM, or a closed terminal, is a Ctrl-C."""
 
     def interrupt(_: int, __: FrameType | None) -> None:
@@ -167,7 +167,7 @@ def _interrupted_by_signals() -> Iterator[None]:
 
 
 @contextmanager
-def _progress_bar() -> Iterator[tuple[ReportRuns | None, ReportAnalysis | None]]:
+def progress_bar() -> Iterator[tuple[ReportRuns | None, ReportAnalysis | None]]:
     """On a terminal: one bar for all runs, then one for their analysis."""
     if not sys.stderr.isatty():
         yield None, None
