@@ -62,6 +62,17 @@ def analyze(directory: Path) -> dict[str, Any]:
     return results.summary
 
 
+def estimates(summary: Mapping[str, Any]) -> dict[str, dict[str, Any]]:
+    """Every entry with a value and an error; nested ones by their path, `diffusion.exponent`."""
+    found: dict[str, dict[str, Any]] = {}
+    for key, entry in summary.items():
+        if isinstance(entry, dict):
+            if "value" in entry:
+                found[key] = entry
+            found |= {f"{key}.{name}": inner for name, inner in estimates(entry).items()}
+    return found
+
+
 def _whole_run(run: RunDirectory) -> dict[str, Any]:
     """What every scene has."""
     observables = run.observables

@@ -1,21 +1,25 @@
-"""`narrows analyze`: the numbers of a run with their errors, and its figures."""
+"""`narrows analyze`: the numbers of a run, or of all runs of a sweep, with their errors."""
 
 from pathlib import Path
-from typing import Annotated, Any
+from typing import Annotated
 
 import typer
 
 
 def analyze(
-    directory: Annotated[Path, typer.Argument(metavar="DIR", help="run directory")],
+    directory: Annotated[Path, typer.Argument(metavar="DIR", help="of a run or a sweep")],
 ) -> None:
-    """Analyse a run: writes summary.json and figures into DIR."""
+    """Analyse a run: writes summary.json and figures into DIR; of a sweep, all runs and a table."""
     from rich.console import Console  # here, so that `narrows --help` stays fast
     from rich.table import Table
 
-    from analysis import RunDirectoryError
+    from analysis import RunDirectoryError, is_sweep
     from analysis import analyze as analyze_run
+    from analysis.summary import estimates
 
+    if is_sweep(directory):
+        _tabulate(directory)
+        return
     try:
         summary = analyze_run(directory)
     except (RunDirectoryError, OSError) as error:
@@ -24,7 +28,8 @@ def analyze(
     state = "" if summary["finished"] else ", not finished"
     title = f"{summary['scene']}, engine {summary['engine']}{state}"
     table = Table("quantity", "value", "error", "note", title=title, title_justify="left")
-    for name, entry in _estimates(summary):
+    for path, entry in estimates(summary).items():
+        name = path.replace(".", " ").replace("_", " ")
         theory = entry.get("theory")
         note = entry.get("reason") or ("" if theory is None else f"theory {theory:.5g}")
         table.add_row(name, _number(entry["value"], 5), _number(entry["error"], 2), note)
@@ -35,16 +40,23 @@ def analyze(
     console.print(files_line, highlight=False, markup=False, soft_wrap=True)
 
 
-def _estimates(summary: dict[str, Any], prefix: str = "") -> list[tuple[str, dict[str, Any]]]:
-    """Every entry with a value and an error, nested ones by their path."""
-    found = []
-    for key, entry in summary.items():
-        if isinstance(entry, dict):
-            name = f"{prefix}{key}".replace("_", " ")
-            if "value" in entry:
-                found.append((name, entry))
-            found += _estimates(entry, f"{name} ")
-    return found
+def _tabulate(directory: Path) -> None:
+    from analysis import RunDirectoryError, tabulate
+    from srd_driver.sweep import available_cores
+
+    try:
+        table = tabulate(directory, available_cores())
+    except (RunDirectoryError, OSError) as error:
+        typer.echo(f"narrows analyze: {error}", err=True)
+        raise typer.Exit(2) from None
+    for problem in table.problems:
+        typer.echo(f"narrows analyze: {problem}", err=True)
+    typer.echo(
+        f"written: {directory / 'table.csv'}: {len(table.rows)} points "
+        f"from {table.finished} of {table.runs} runs"
+    )
+    if table.problems:
+        raise typer.Exit(1)
 
 
 def _number(value: float | None, digits: int) -> str:

@@ -28,8 +28,9 @@ def user_errors() -> Iterator[None]:
     except (RunError, OSError) as error:
         _complain(str(error))
         raise typer.Exit(1) from None
-    except KeyboardInterrupt:
-        _complain("interrupted: go on from the newest checkpoint by --resume")
+    except KeyboardInterrupt as interrupt:
+        advice = str(interrupt) or "go on from the newest checkpoint by --resume"
+        _complain(f"interrupted: {advice}")
         raise typer.Exit(130) from None
 
 

@@ -1,7 +1,11 @@
 """`narrows deck` and `narrows run`: a scene to a LAMMPS deck, or to a run directory."""
 
+import signal
 import sys
+from collections.abc import Iterator
+from contextlib import contextmanager
 from pathlib import Path
+from types import FrameType
 from typing import Annotated, Any, Literal
 
 import typer
@@ -13,7 +17,7 @@ from lammps_inputs.deck import Engine, write_deck
 from narrows.messages import say, user_errors
 from srd_driver import RunError, Simulation
 from srd_driver.parallel import agree, communicator
-from srd_driver.run_directory import stored_engine, stored_fields
+from srd_driver.run_directory import is_half_made, stored_engine, stored_fields
 
 SceneName = Annotated[str, typer.Argument(metavar="SCENE", help=" or ".join(SCENES))]
 SceneFile = Annotated[
@@ -63,7 +67,10 @@ def run(
         )
         chosen = _scene(scene, stored, file, settings)
         engine = engine or engine_before or "srd"
-        with Simulation(chosen, engine, out, resume, checkpoint_interval) as simulation:
+        with (
+            Simulation(chosen, engine, out, resume, checkpoint_interval) as simulation,
+            _stopped_by_signals(simulation),
+        ):
             if simulation.finished:
                 say(f"{out}: finished before, at time {simulation.time:g}")
                 return
@@ -73,12 +80,37 @@ def run(
                 _finish_with_progress_bar(simulation)
             else:
                 simulation.finish()
+            if not simulation.finished:
+                raise KeyboardInterrupt
             say(f"{out}: at time {simulation.time:g}; next: narrows analyze {out}")
+
+
+@contextmanager
+def _stopped_by_signals(simulation: Simulation) -> Iterator[None]:
+    """Ctrl-C, or a queueing system's SIGTERM: a checkpoint, then the end; a second one: at once.
+
+    Not under mpirun, which ends its processes itself.
+    """
+    if communicator().size > 1:
+        yield
+        return
+
+    def stop(number: int, _: FrameType | None) -> None:
+        signal.signal(number, before[number])
+        simulation.stop()
+
+    numbers: tuple[int, ...] = (signal.SIGINT, signal.SIGTERM)
+    before = {number: signal.signal(number, stop) for number in numbers}
+    try:
+        yield
+    finally:
+        for number, handler in before.items():
+            signal.signal(number, handler)
 
 
 def _stored(directory: Path) -> tuple[dict[str, Any], Engine | None]:
     """Fields and engine of the run to resume, if there is one."""
-    if not directory.is_dir() or not any(directory.iterdir()):
+    if not directory.is_dir() or not any(directory.iterdir()) or is_half_made(directory):
         return {}, None
     return stored_fields(directory), stored_engine(directory)
 
@@ -86,12 +118,18 @@ def _stored(directory: Path) -> tuple[dict[str, Any], Engine | None]:
 def _scene(
     name: str, stored: dict[str, Any], file: Path | None, settings: list[str] | None
 ) -> Scene:
-    """The scene from its stored fields, the file and the settings, the later ones winning."""
+    return make_scene(name, **scene_fields(name, stored, file, settings))
+
+
+def scene_fields(
+    name: str, stored: dict[str, Any], file: Path | None, settings: list[str] | None
+) -> dict[str, Any]:
+    """The stored fields, those of the file and the settings, the later ones winning."""
     fields = stored | (read_scene(file) if file else {})
     fields |= dict(parse_assignment(text) for text in settings or [])
     if fields.get("scene", name) != name:
         raise SceneError([f"scene = {fields['scene']!r}: the command line says {name!r}"])
-    return make_scene(name, **{field: fields[field] for field in fields if field != "scene"})
+    return {field: fields[field] for field in fields if field != "scene"}
 
 
 def _finish_with_progress_bar(simulation: Simulation) -> None:

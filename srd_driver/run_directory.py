@@ -1,5 +1,6 @@
 """The files of a run (docs/run-directory.md): creating, resuming and never losing them."""
 
+import contextlib
 import json
 import os
 import shlex
@@ -9,13 +10,15 @@ from collections.abc import Iterator
 from dataclasses import asdict, dataclass
 from importlib.metadata import PackageNotFoundError, version
 from pathlib import Path
-from typing import Any
+from typing import Any, TextIO
 
 from lammps_inputs import Scene
-from lammps_inputs.deck import Engine, check_engine, manifest, script, write_deck
+from lammps_inputs.deck import Engine, manifest, script, write_deck
+from srd_driver import run_lock
 from srd_driver.errors import RunError
 
 CHANGEABLE = {"duration"}  # a run may be resumed to last longer
+FAILURE = "failure.txt"
 
 
 @dataclass(frozen=True)
@@ -28,20 +31,43 @@ class Progress:
     checkpoint: str | None = None
 
 
+def take(directory: Path, resume: bool) -> TextIO:
+    """Take the directory, made if it is missing, for this process until the file is closed.
+
+    Raises:
+        RunError: when another process runs there, when it is not empty and not to be resumed, or
+            holds no run, or cannot be written.
+    """
+    try:
+        directory.mkdir(parents=True, exist_ok=True)
+        if not resume:
+            _require_empty(directory)
+        elif any(directory.iterdir()) and not (is_begun(directory) or is_half_made(directory)):
+            stored_fields(directory)
+            raise RunError(f"{directory} is not a run directory: it has no progress.json")
+        held = run_lock.lock(directory)
+        if not resume:
+            _require_empty(directory)  # another process may have been quicker
+    except OSError as error:
+        raise RunError(f"cannot write {directory}: {error.strerror or error}") from None
+    return held
+
+
+def _require_empty(directory: Path) -> None:
+    if any(path.name != run_lock.LOCK for path in directory.iterdir()):
+        raise RunError(
+            f"{directory} is not empty: go on with its run by --resume, or choose another"
+        )
+
+
 def create(scene: Scene, engine: Engine, directory: Path, ranks: int) -> Progress:
-    """Make the run directory of a new run.
+    """Write the run directory of a new run; over one that a kill left half made.
 
     Raises:
         SceneError: when the engine cannot run the scene.
-        RunError: when the directory is not empty or cannot be written.
+        RunError: when the directory cannot be written.
     """
-    check_engine(scene, engine)
     try:
-        directory.mkdir(parents=True, exist_ok=True)
-        if any(directory.iterdir()):
-            raise RunError(
-                f"{directory} is not empty: go on with its run by --resume, or choose another"
-            )
         write_deck(scene, directory, engine)
         _write_manifest(scene, engine, directory, ranks)
         return write_progress(directory, Progress())
@@ -77,8 +103,9 @@ def reopen(scene: Scene, engine: Engine, directory: Path, ranks: int) -> Progres
     Raises:
         RunError: when the directory holds no run, or one of another scene or engine.
     """
-    _refuse_another_scene(scene, engine, directory)
-    progress = Progress(**_read_json(directory / "progress.json", directory))
+    refuse_another_scene(scene, engine, directory)
+    progress = read_progress(directory)
+    (directory / FAILURE).unlink(missing_ok=True)
     if progress.checkpoint and not (directory / progress.checkpoint).exists():
         raise RunError(f"{directory}: its checkpoint {progress.checkpoint} is missing")
     if progress.step < scene.total_steps:
@@ -96,6 +123,41 @@ def reopen(scene: Scene, engine: Engine, directory: Path, ranks: int) -> Progres
     return progress
 
 
+def is_begun(directory: Path) -> bool:
+    """Whether the directory holds a run; not so one that was killed while it was made."""
+    return (directory / "progress.json").is_file()
+
+
+def is_half_made(directory: Path) -> bool:
+    """Whether a run was being made in the directory when it was killed."""
+    return (directory / run_lock.LOCK).is_file() and not is_begun(directory)
+
+
+def read_progress(directory: Path) -> Progress:
+    """How far the run in the directory is for sure: its newest checkpoint.
+
+    Raises:
+        RunError: when the directory holds no run.
+    """
+    return Progress(**_read_json(directory / "progress.json", directory))
+
+
+def newest_step(directory: Path) -> int:
+    """The last step that the run in the directory has written of, after its newest checkpoint.
+
+    Raises:
+        RunError: when the directory holds no run.
+    """
+    step = read_progress(directory).step
+    try:
+        with (directory / "observables.dat").open("rb") as file:
+            file.seek(max(0, os.fstat(file.fileno()).st_size - 1024))
+            rows = file.read().split(b"\n")[1:-1]  # what lies between two line ends is whole
+    except FileNotFoundError:
+        return step
+    return max([step, *(int(row.split()[0]) for row in rows[-1:] if not row.startswith(b"#"))])
+
+
 def write_progress(directory: Path, progress: Progress) -> Progress:
     """Record the newest checkpoint, then drop the older ones; safe against a kill at any moment."""
     replace_text(directory / "progress.json", json.dumps(asdict(progress), indent=2) + "\n")
@@ -103,6 +165,20 @@ def write_progress(directory: Path, progress: Progress) -> Progress:
         if old.name != progress.checkpoint:
             old.unlink(missing_ok=True)
     return progress
+
+
+def write_failure(directory: Path, message: str) -> None:
+    """Leave word of what stopped the run, if the disk has room for it; resuming removes it."""
+    with contextlib.suppress(OSError):
+        (directory / FAILURE).write_text(message + "\n", encoding="utf-8")
+
+
+def read_failure(directory: Path) -> str | None:
+    """What stopped the run, if it was an error."""
+    try:
+        return (directory / FAILURE).read_text(encoding="utf-8").strip()
+    except OSError:
+        return None
 
 
 def replace_text(path: Path, text: str) -> None:
@@ -159,7 +235,12 @@ def _first_row(path: Path, step: int) -> int:
     return path.stat().st_size
 
 
-def _refuse_another_scene(scene: Scene, engine: Engine, directory: Path) -> None:
+def refuse_another_scene(scene: Scene, engine: Engine, directory: Path) -> None:
+    """Let only the scene and engine of a run directory pass; its duration may change.
+
+    Raises:
+        RunError: when the directory holds no run, or one of another scene or engine.
+    """
     stored = stored_fields(directory)
     if stored.pop("scene", None) != scene.name:
         raise RunError(f"{directory} holds another scene than {scene.name}")

@@ -7,11 +7,11 @@ from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 from pathlib import Path
 from types import TracebackType
-from typing import Any, Self
+from typing import Any, Self, TextIO
 
 import lammps_plugin
 from lammps_inputs import Scene
-from lammps_inputs.deck import Engine
+from lammps_inputs.deck import Engine, check_engine
 from srd_driver import run_directory
 from srd_driver.errors import RunError
 from srd_driver.parallel import agree, communicator
@@ -19,6 +19,21 @@ from srd_driver.run_directory import Progress
 from srd_driver.session import Array, Session
 
 PIECE_SECONDS = 0.5  # between two reports of progress
+
+
+def require_engine(scene: Scene, engine: Engine) -> None:
+    """Refuse a scene that the engine cannot run, or an engine that is not installed.
+
+    Raises:
+        SceneError: naming the field, its value and what the engine allows.
+        RunError: for fix mpc without the plugin.
+    """
+    check_engine(scene, engine)
+    if engine == "mpc" and not lammps_plugin.folder():
+        raise RunError(
+            "fix mpc was not built when narrows was installed: install a C++17 compiler, then "
+            "narrows again with NARROWS_REQUIRE_PLUGIN=1; or use --engine srd"
+        )
 
 
 class Simulation:
@@ -55,20 +70,28 @@ class Simulation:
         self._comm = communicator()
         if engine == "reference" and self._comm.size > 1:
             raise RunError("the reference engine runs on one process; use --engine srd with mpirun")
-        if engine == "mpc" and not lammps_plugin.folder():
-            raise RunError(
-                "fix mpc was not built when narrows was installed: install a C++17 compiler, then "
-                "narrows again with NARROWS_REQUIRE_PLUGIN=1; or use --engine srd"
-            )
+        require_engine(scene, engine)
         self._temporary: tempfile.TemporaryDirectory[str] | None = None
-        self.directory, self._progress = agree(
-            self._comm, lambda: self._open(Path(directory) if directory else None, resume)
-        )
+        self._lock: TextIO | None = None
+        self._session: Session | None = None
+        self._stop_asked = False
+        try:
+            self.directory, self._progress = agree(
+                self._comm, lambda: self._open(Path(directory) if directory else None, resume)
+            )
+        except BaseException:
+            self.close()
+            raise
         samples = max(1, round(checkpoint_interval / scene.time_step / scene.sample_steps))
         self._checkpoint_steps = samples * scene.sample_steps
         self._began = clock.perf_counter()
         self._piece = 1  # sampling intervals run between two reports
-        self._session = self._start() if self._progress.step < scene.total_steps else None
+        if self._progress.step < scene.total_steps:
+            try:
+                self._session = self._start()
+            except BaseException as error:
+                self.__exit__(type(error), error, error.__traceback__)
+                raise
 
     def _open(self, directory: Path | None, resume: bool) -> tuple[Path, Progress]:
         if directory is None:
@@ -76,7 +99,8 @@ class Simulation:
             directory = Path(self._temporary.name)
         directory = directory.resolve()
         ranks = self._comm.size
-        if resume and directory.is_dir() and any(directory.iterdir()):
+        self._lock = run_directory.take(directory, resume)
+        if resume and run_directory.is_begun(directory):
             return directory, run_directory.reopen(self.scene, self.engine, directory, ranks)
         return directory, run_directory.create(self.scene, self.engine, directory, ranks)
 
@@ -149,6 +173,13 @@ class Simulation:
         """Run to the end of the scene's duration; as `run`."""
         self._run_until(self.scene.total_steps, report)
 
+    def stop(self) -> None:
+        """Let the `run` or `finish` under way, or the next, return soon, a checkpoint written.
+
+        Soon is at the next report. A signal handler may call this; under mpirun all processes must.
+        """
+        self._stop_asked = True
+
     def checkpoint(self) -> None:
         """Write a checkpoint now: `resume` goes on from here."""
         session = self._running()
@@ -167,6 +198,8 @@ class Simulation:
         if self._session:
             self._session.close()
             self._session = None
+        if self._lock:
+            self._lock.close()
         if self._temporary:
             self._temporary.cleanup()
 
@@ -179,6 +212,8 @@ class Simulation:
         error: BaseException | None,
         trace: TracebackType | None,
     ) -> None:
+        if isinstance(error, RunError):
+            run_directory.write_failure(self.directory, str(error))
         self.close()
 
     def _run_until(self, end: int, report: Callable[[Self], Any] | None) -> None:
@@ -193,10 +228,14 @@ class Simulation:
                 session.advance(steps)
             pace = PIECE_SECONDS * steps / sample / (clock.perf_counter() - began)
             self._piece = self._comm.bcast(max(1, int(pace)), root=0)
-            if self.step in (next_checkpoint, end):
+            stopped = self._comm.bcast(self._stop_asked, root=0)
+            if stopped or self.step in (next_checkpoint, end):
                 self.checkpoint()
             if report:
                 report(self)
+            if stopped:
+                self._stop_asked = False
+                return
 
     def _running(self) -> Session:
         if self._session is None:

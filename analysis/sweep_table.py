@@ -1,0 +1,221 @@
+"""The table of a sweep: one row a point, every number with its error (docs/sweep.md)."""
+
+import csv
+import json
+import math
+import os
+import signal
+from collections.abc import Callable, Iterator, Mapping, Sequence
+from concurrent.futures import Future, ProcessPoolExecutor, as_completed
+from contextlib import contextmanager
+from dataclasses import dataclass
+from multiprocessing import get_context
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from analysis.blocking import Estimate
+from analysis.run_directory import RunDirectory, RunDirectoryError
+from analysis.summary import analyze, estimates
+
+MIN_REPEATS = 4  # an error from the spread of R numbers is itself uncertain by 1/sqrt(2(R - 1))
+
+Row = dict[str, Any]
+
+
+@dataclass(frozen=True)
+class SweepTable:
+    """What a sweep found.
+
+    Attributes:
+        rows: one a point: swept fields, `repeats`, and `NAME`, `NAME_error` of every estimate,
+            `notes`; as in table.csv.
+        finished: runs in it.
+        runs: runs of the sweep.
+        problems: one line for each finished run that could not be analysed.
+    """
+
+    rows: list[Row]
+    finished: int
+    runs: int
+    problems: list[str]
+
+
+def is_sweep(directory: Path) -> bool:
+    """Whether the directory is that of a sweep."""
+    return (directory / "sweep.json").is_file()
+
+
+def combine(repeats: Sequence[Estimate]) -> Estimate:
+    """The mean of independent repeats of one measurement, with its error.
+
+    From `MIN_REPEATS` on the error is that of their spread, s / sqrt(R) with s^2 = sum (x - mean)^2
+    / (R - 1), unbiased whatever the correlations within a run are. Fewer repeats have their own
+    errors combined, sqrt(sum e^2) / R; where one is missing it is the spread's again, and the
+    reason says that it is poor. Repeats without a value are left out.
+    """
+    known = [estimate for estimate in repeats if estimate.value is not None]
+    if len(repeats) == 1 or not known:
+        return repeats[0]
+    values = np.array([estimate.value for estimate in known], dtype=float)
+    errors = [estimate.error for estimate in known if estimate.error is not None]
+    count = len(known)
+    value = float(values.mean())
+    notes = [] if count == len(repeats) else [f"{count} of {len(repeats)} repeats tell it"]
+    error: float | None
+    if count < MIN_REPEATS and len(errors) == count:
+        error = math.hypot(*errors) / count
+        notes += dict.fromkeys(estimate.reason for estimate in known if estimate.reason)
+    elif count > 1:
+        error = float(values.std(ddof=1)) / math.sqrt(count)
+        if count < MIN_REPEATS:
+            notes.append(f"from the spread of only {count} repeats")
+    else:
+        error = None
+    return Estimate(value, error, "; ".join(notes) or None)
+
+
+def tabulate(
+    directory: Path,
+    jobs: int,
+    renew: bool = True,
+    report: Callable[[int, int], None] | None = None,
+) -> SweepTable:
+    """Analyse the finished runs of a sweep and write its table.csv.
+
+    Args:
+        directory: of the sweep.
+        jobs: processes that analyse.
+        renew: analyse again what was analysed since it finished.
+        report: called with the runs analysed and the runs to analyse.
+
+    Raises:
+        RunDirectoryError: when it is no sweep.
+        OSError: when the table cannot be written.
+    """
+    try:
+        sweep = json.loads((directory / "sweep.json").read_text(encoding="utf-8"))
+        runs, over = sweep["runs"], sweep["over"]
+        finished = [name for name in runs if _finished(directory / name, runs[name])]
+    except (OSError, ValueError, KeyError, TypeError) as error:
+        raise RunDirectoryError(f"{directory / 'sweep.json'}: {error}") from None
+    stale = [name for name in finished if renew or not _is_analysed(directory / name)]
+    problems = _analyse([directory / name for name in stale], jobs, report)
+    summaries = {
+        name: _read_estimates(directory / name / "summary.json")
+        for name in finished
+        if directory / name not in problems
+    }
+    columns = _columns(over, [run["fields"] for run in runs.values()])
+    rows = _rows(columns, {name: runs[name]["fields"] for name in summaries}, summaries)
+    _write(directory / "table.csv", rows)
+    return SweepTable(rows, len(summaries), len(runs), list(problems.values()))
+
+
+def _read_estimates(path: Path) -> dict[str, Estimate]:
+    summary = json.loads(path.read_text(encoding="utf-8"))
+    return {
+        name: Estimate(entry["value"], entry["error"], entry.get("reason"))
+        for name, entry in estimates(summary).items()
+    }
+
+
+def _finished(path: Path, run: Mapping[str, Any]) -> bool:
+    """Whether the run has all the steps that the sweep wants of it."""
+    if not (path / "progress.json").is_file():
+        return False
+    return bool(RunDirectory(path).progress["step"] >= run["total_steps"])
+
+
+def _is_analysed(path: Path) -> bool:
+    summary = path / "summary.json"
+    written = (path / "progress.json").stat().st_mtime
+    return summary.is_file() and summary.stat().st_mtime >= written
+
+
+def _analyse(
+    paths: Sequence[Path], jobs: int, report: Callable[[int, int], None] | None
+) -> dict[Path, str]:
+    """Write the summaries; what went wrong, by path."""
+    problems: dict[Path, str] = {}
+    if not paths:
+        return problems
+    # spawned, because MPI may be initialised here
+    with ProcessPoolExecutor(min(jobs, len(paths)), get_context("spawn")) as pool:
+        with _ctrl_c_held():
+            tasks: dict[Future[Any], Path] = {pool.submit(analyze, path): path for path in paths}
+        try:
+            for done, task in enumerate(as_completed(tasks), start=1):
+                error = task.exception()
+                if isinstance(error, RunDirectoryError | OSError):
+                    problems[tasks[task]] = str(error)
+                elif error is not None:
+                    raise error
+                if report:
+                    report(done, len(paths))
+        except BaseException:
+            pool.shutdown(wait=False, cancel_futures=True)
+            raise
+    return problems
+
+
+@contextmanager
+def _ctrl_c_held() -> Iterator[None]:
+    """Processes started in here never see Ctrl-C: this one handles it for them, afterwards."""
+    before = signal.pthread_sigmask(signal.SIG_BLOCK, {signal.SIGINT})
+    try:
+        yield
+    finally:
+        signal.pthread_sigmask(signal.SIG_SETMASK, before)
+
+
+def _columns(over: Sequence[str], fields: Sequence[Mapping[str, Any]]) -> list[str]:
+    """The swept fields, and whatever else differs, as after the sweep was extended."""
+    names = dict.fromkeys([*over, *(name for one in fields for name in one if name != "seed")])
+    differing = (name for name in names if len({json.dumps(one.get(name)) for one in fields}) > 1)
+    return list(dict.fromkeys([*over, *differing]))
+
+
+def _rows(
+    columns: Sequence[str],
+    fields: Mapping[str, Mapping[str, Any]],
+    summaries: Mapping[str, Mapping[str, Estimate]],
+) -> list[Row]:
+    points: dict[tuple[Any, ...], list[str]] = {}
+    for name in summaries:
+        points.setdefault(tuple(fields[name].get(column) for column in columns), []).append(name)
+    quantities = list(dict.fromkeys(key for found in summaries.values() for key in found))
+    rows = []
+    for point in sorted(points, key=_order):
+        row: Row = dict(zip(columns, point, strict=True)) | {"repeats": len(points[point])}
+        notes = []
+        for quantity in quantities:
+            found = [
+                summaries[name][quantity] for name in points[point] if quantity in summaries[name]
+            ]
+            estimate = combine(found) if found else Estimate(None, None)
+            row |= {quantity: estimate.value, f"{quantity}_error": estimate.error}
+            if estimate.reason:
+                notes.append(f"{quantity}: {estimate.reason}")
+        rows.append(row | {"notes": "; ".join(notes)})
+    return rows
+
+
+def _order(point: tuple[Any, ...]) -> list[tuple[bool, float, str]]:
+    """Numbers by size, before words."""
+    return [
+        (False, float(value), "") if isinstance(value, int | float) else (True, 0.0, str(value))
+        for value in point
+    ]
+
+
+def _write(path: Path, rows: Sequence[Row]) -> None:
+    """Writes beside the file and renames, so that no reader sees half of it."""
+    partial = path.with_name(path.name + ".partial")
+    with partial.open("w", encoding="utf-8", newline="") as file:
+        if rows:
+            writer = csv.DictWriter(file, list(rows[0]))
+            writer.writeheader()
+            writer.writerows(rows)
+    os.replace(partial, path)

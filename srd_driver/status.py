@@ -1,0 +1,68 @@
+"""How far runs are, told from their run directories alone, while they run or not."""
+
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Literal
+
+from lammps_inputs import make_scene
+from srd_driver import run_directory
+from srd_driver.run_lock import is_locked
+from srd_driver.sweep import Run, is_finished
+
+State = Literal["finished", "running", "failed", "waiting"]
+
+
+@dataclass(frozen=True)
+class Status:
+    """How far a run is.
+
+    Attributes:
+        state: waiting: not begun, or stopped half way without an error.
+        time: simulated so far, equilibration included [t0]; of a run that does not run now, up to
+            its newest checkpoint.
+        end: at which the run is finished [t0].
+        speed: simulated time per wall time up to the newest checkpoint, None before the first
+            [t0/s].
+        failure: the error that stopped a failed run.
+    """
+
+    state: State
+    time: float
+    end: float
+    speed: float | None
+    failure: str | None
+
+
+def status_of(run: Run) -> Status:
+    """How far the run is.
+
+    Raises:
+        RunError: when its directory holds another run.
+    """
+    step = run.scene.time_step
+    end = run.scene.total_steps * step
+    locked = is_locked(run.folder)
+    if not run_directory.is_begun(run.folder):
+        return Status("running" if locked else "waiting", 0.0, end, None, None)
+    finished = is_finished(run)
+    progress = run_directory.read_progress(run.folder)
+    speed = progress.step * step / progress.wall_seconds if progress.wall_seconds else None
+    failure = run_directory.read_failure(run.folder)
+    if finished:
+        return Status("finished", progress.step * step, end, speed, None)
+    if locked:
+        return Status("running", run_directory.newest_step(run.folder) * step, end, speed, None)
+    state: State = "waiting" if failure is None else "failed"
+    return Status(state, progress.step * step, end, speed, failure)
+
+
+def stored_run(directory: Path) -> Run:
+    """The run of a run directory.
+
+    Raises:
+        RunError: when it holds none.
+        SceneError: when its scene is not one of this version.
+    """
+    fields = run_directory.stored_fields(directory)
+    scene = make_scene(fields.pop("scene"), **fields)
+    return Run(directory, scene, run_directory.stored_engine(directory))

@@ -1,0 +1,162 @@
+"""What a sweep consists of: its points, their seeds, and `sweep.json`, which keeps them.
+
+A point is one combination of the swept fields; its repeats differ by the seed alone.
+"""
+
+import itertools
+import json
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any, get_args
+
+from lammps_inputs import SCENES, SceneError, make_scene
+from lammps_inputs.deck import Engine
+from srd_driver.errors import RunError
+from srd_driver.run_directory import replace_text
+from srd_driver.simulation import require_engine
+from srd_driver.sweep import Run, is_finished
+
+FILE = "sweep.json"
+
+
+@dataclass(frozen=True)
+class Sweep:
+    """The runs of a sweep; `over` names the swept fields."""
+
+    directory: Path
+    scene: str
+    engine: Engine
+    over: tuple[str, ...]
+    runs: tuple[Run, ...]
+
+
+def plan(
+    directory: Path,
+    scene: str,
+    fields: Mapping[str, Any],
+    over: Mapping[str, Sequence[Any]],
+    repeats: int,
+    engine: Engine,
+) -> Sweep:
+    """The product of the lists of `over`, each point with the seeds seed, seed + 1, ...
+
+    Args:
+        fields: of the scene, for all points.
+        over: the values of each swept field.
+        repeats: runs of each point, R.
+
+    Raises:
+        SceneError: naming each bad point, its field, value and what is allowed.
+        RunError: when the engine is not installed.
+    """
+    if "seed" in over and repeats > 1:
+        raise SceneError.of_field("repeats", repeats, "must be 1 where the seed is swept")
+    runs: dict[str, Run] = {}
+    problems: dict[str, list[str]] = {}
+    for values in itertools.product(*over.values()):
+        point = dict(zip(over, values, strict=True))
+        label = _label(point)
+        try:
+            first = make_scene(scene, **{**fields, **point})
+            for repeat in range(repeats):
+                run_scene = make_scene(
+                    scene, **(first.model_dump() | {"seed": first.seed + repeat})
+                )
+                require_engine(run_scene, engine)
+                names = [*over, "seed"] if "seed" not in over else over
+                name = _label({field: getattr(run_scene, field) for field in names})
+                if name in runs:
+                    raise SceneError(["given twice"])
+                runs[name] = Run(directory / name, run_scene, engine)
+        except SceneError as error:
+            for problem in error.problems:
+                problems.setdefault(problem, []).append(label)
+    if problems:
+        raise SceneError(f"{_points(labels)}: {text}" for text, labels in problems.items())
+    return Sweep(directory, scene, engine, tuple(over), tuple(runs.values()))
+
+
+def store(sweep: Sweep) -> Sweep:
+    """Write the sweep to its directory; one that is there already is extended.
+
+    Returns:
+        the sweep of the directory, all its points.
+
+    Raises:
+        RunError: when the directory holds something else, or a run directory of this sweep's
+            holds another scene; nothing is written then.
+    """
+    directory = sweep.directory
+    for run in sweep.runs:
+        is_finished(run)
+    if is_sweep(directory):
+        before = read(directory)
+        if (before.scene, before.engine) != (sweep.scene, sweep.engine):
+            raise RunError(
+                f"{directory} holds a sweep of {before.scene} by the engine {before.engine}, "
+                f"not of {sweep.scene} by {sweep.engine}: choose another folder"
+            )
+        over = tuple(dict.fromkeys(before.over + sweep.over))
+        runs = {run.folder: run for run in before.runs + sweep.runs}
+        sweep = Sweep(directory, sweep.scene, sweep.engine, over, tuple(runs.values()))
+    elif directory.is_dir() and any(directory.iterdir()):
+        raise RunError(f"{directory} is not empty and holds no sweep: choose another folder")
+    content = {
+        "scene": sweep.scene,
+        "engine": sweep.engine,
+        "over": sweep.over,
+        "runs": {
+            run.folder.name: {
+                "fields": run.scene.model_dump(),
+                "total_steps": run.scene.total_steps,
+            }
+            for run in sweep.runs
+        },
+    }
+    directory.mkdir(parents=True, exist_ok=True)
+    replace_text(directory / FILE, json.dumps(content, indent=1) + "\n")
+    return sweep
+
+
+def is_sweep(directory: Path) -> bool:
+    """Whether the directory is that of a sweep."""
+    return (directory / FILE).is_file()
+
+
+def read(directory: Path) -> Sweep:
+    """The sweep of a directory.
+
+    Raises:
+        RunError: when it holds none.
+    """
+    try:
+        content = json.loads((directory / FILE).read_text(encoding="utf-8"))
+        scene, engine = content["scene"], content["engine"]
+        runs = tuple(
+            Run(directory / name, make_scene(scene, **run["fields"]), engine)
+            for name, run in content["runs"].items()
+        )
+        if scene not in SCENES or engine not in get_args(Engine):
+            raise ValueError(f"scene {scene}, engine {engine}")
+        return Sweep(directory, scene, engine, tuple(content["over"]), runs)
+    except OSError:
+        raise RunError(f"{directory} holds no sweep: it has no {FILE}") from None
+    except (ValueError, KeyError, TypeError, AttributeError) as error:
+        raise RunError(f"{directory / FILE} is not that of a sweep: {error}") from None
+
+
+def _label(point: Mapping[str, Any]) -> str:
+    """`gravity=0.1,seed=2`: the name of a point, or of a run directory."""
+    return ",".join(f"{field}={_text(value)}" for field, value in point.items())
+
+
+def _text(value: Any) -> str:
+    if value is None:
+        return "none"
+    return str(value).removesuffix(".0") if isinstance(value, float) else str(value)
+
+
+def _points(labels: list[str]) -> str:
+    first = f"point {labels[0]}" if labels[0] else "every point"
+    return first if len(labels) == 1 else f"{first} and {len(labels) - 1} more"

@@ -1,0 +1,149 @@
+import csv
+import json
+
+import numpy as np
+import pytest
+
+from analysis import Estimate, RunDirectoryError, tabulate
+from analysis.sweep_table import MIN_REPEATS, combine
+from tests.analysis.run_writer import CHANNEL, write_channel, write_manifest
+
+
+def estimates(values, errors):
+    return [Estimate(value, error) for value, error in zip(values, errors, strict=True)]
+
+
+def test_four_repeats_have_the_error_of_their_spread():
+    found = combine(estimates([1, 2, 3, 6], [9, 9, None, 9]))
+    assert found == Estimate(3.0, pytest.approx(np.sqrt(14 / 12)), None)
+
+
+def test_fewer_have_their_own_errors_combined():
+    assert combine(estimates([1, 2], [3, 4])) == Estimate(1.5, 2.5, None)
+    low = [Estimate(1, 3, "at least: 9 samples are too correlated"), Estimate(2, 4)]
+    assert combine(low) == Estimate(1.5, 2.5, "at least: 9 samples are too correlated")
+    assert combine(low[:1]) == low[0]
+
+
+def test_what_is_missing_is_said():
+    poor = combine(estimates([1, 3], [None, 1]))
+    assert poor == Estimate(2.0, pytest.approx(1.0), "from the spread of only 2 repeats")
+    some = combine([*estimates([1, 3, 2, 2], [1, 1, 1, 1]), Estimate(None, None, "no flow")])
+    assert some.value == 2.0
+    assert some.reason == "4 of 5 repeats tell it"
+    nothing = Estimate(None, None, "no flow")
+    assert combine([nothing, nothing]) == nothing
+
+
+def test_the_error_of_repeats_is_that_of_their_mean():
+    """Repeats of known scatter: the error squared is on average the variance of the mean.
+
+    The mean of n error^2 itself scatters by sqrt(2 / (R - 1) / n), 0.6 %: 5 of these are allowed.
+    """
+    random = np.random.default_rng(1)
+    sets = 20_000
+    samples = 5 + 2 * random.normal(size=(sets, MIN_REPEATS))
+    found = [combine(estimates(row, [0.1] * MIN_REPEATS)) for row in samples]
+    squares = np.array([estimate.error**2 for estimate in found])
+    allowed = 5 * np.sqrt(2 / (MIN_REPEATS - 1) / sets)
+    assert squares.mean() == pytest.approx(2**2 / MIN_REPEATS, rel=allowed)
+
+
+def write_sweep(path, over, runs, total_steps=20_000):
+    path.mkdir(exist_ok=True)
+    definition = {
+        "scene": "channel",
+        "engine": "srd",
+        "over": over,
+        "runs": {
+            name: {"fields": CHANNEL | fields, "total_steps": total_steps}
+            for name, fields in runs.items()
+        },
+    }
+    (path / "sweep.json").write_text(json.dumps(definition))
+
+
+def write_analysed(path, fields, summary, step=20_000):
+    write_manifest(path, "channel", CHANNEL | fields, colloids=1)
+    (path / "progress.json").write_text(json.dumps({"step": step, "finished": step == 20_000}))
+    (path / "summary.json").write_text(json.dumps(summary))
+
+
+def speed(value, error):
+    return {"scene": "channel", "settling_speed": {"value": value, "error": error}}
+
+
+def read(path):
+    with (path / "table.csv").open(newline="") as file:
+        return list(csv.DictReader(file))
+
+
+def test_one_row_a_point(tmp_path):
+    runs = {
+        f"gravity={g},seed={s}": {"gravity": g, "seed": s} for g in (0.2, 0.1) for s in (1, 2, 3, 4)
+    }
+    write_sweep(tmp_path, ["gravity"], runs)
+    values = dict(zip(runs, [1, 2, 3, 6, 5, 7, 0, 0], strict=True))
+    for name, fields in runs.items():
+        if fields["gravity"] == 0.2 or fields["seed"] < 3:
+            write_analysed(tmp_path / name, fields, speed(values[name], 0.3))
+    write_analysed(tmp_path / "gravity=0.1,seed=3", runs["gravity=0.1,seed=3"], {}, step=10)
+    table = tabulate(tmp_path, 1, renew=False)
+    assert (table.finished, table.runs, table.problems) == (6, 8, [])
+    low, high = read(tmp_path)
+    assert list(low) == ["gravity", "repeats", "settling_speed", "settling_speed_error", "notes"]
+    assert {key: float(low[key]) for key in list(low)[:4]} == pytest.approx(
+        {
+            "gravity": 0.1,
+            "repeats": 2,
+            "settling_speed": 6.0,
+            "settling_speed_error": 0.3 / np.sqrt(2),
+        }
+    )
+    assert {key: float(high[key]) for key in list(high)[:4]} == pytest.approx(
+        {
+            "gravity": 0.2,
+            "repeats": 4,
+            "settling_speed": 3.0,
+            "settling_speed_error": np.sqrt(14 / 12),
+        }
+    )
+
+
+def test_a_field_that_differs_is_a_column_though_it_was_not_swept(tmp_path):
+    runs = {
+        "gravity=0.1,seed=1": {"gravity": 0.1, "width": 10.0},
+        "gravity=0.2,seed=1": {"gravity": 0.2, "width": 12.0},
+    }
+    write_sweep(tmp_path, ["gravity"], runs)
+    for name, fields in runs.items():
+        write_analysed(tmp_path / name, fields, speed(1, 1))
+    tabulate(tmp_path, 1, renew=False)
+    assert [(row["gravity"], row["width"]) for row in read(tmp_path)] == [
+        ("0.1", "10.0"),
+        ("0.2", "12.0"),
+    ]
+
+
+def test_runs_are_analysed_and_one_that_cannot_be_is_named(tmp_path):
+    write_sweep(tmp_path, [], {"seed=1": {"seed": 1}, "seed=2": {"seed": 2}}, total_steps=1000)
+    times = np.arange(101)[:, None, None]
+    velocities = 0.1 * np.random.default_rng(0).normal(size=(101, 1, 2))
+    for name in ("seed=1", "seed=2"):
+        path = tmp_path / name
+        positions = np.array([[5.0, 5.0]]) + times * [0.03, 0.0]
+        write_channel(path, positions, velocities, np.full(100, 0.01), total_steps=1000)
+        (path / "progress.json").write_text(json.dumps({"step": 1000, "finished": True}))
+    (tmp_path / "seed=2" / "observables.dat").write_text("# TimeStep\n")
+    table = tabulate(tmp_path, 2)
+    assert (table.finished, table.runs) == (1, 2)
+    assert len(table.problems) == 1
+    assert "observables.dat: no column v_fluid_temperature" in table.problems[0]
+    (row,) = read(tmp_path)
+    assert float(row["settling_speed_rest"]) == pytest.approx(0.03)
+    assert (tmp_path / "seed=1" / "summary.json").exists()
+
+
+def test_what_is_no_sweep_is_refused(tmp_path):
+    with pytest.raises(RunDirectoryError, match=r"sweep\.json: "):
+        tabulate(tmp_path, 1)
