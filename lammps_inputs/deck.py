@@ -13,6 +13,7 @@ from lammps_inputs.deck_lines import Start
 from lammps_inputs.viscosity import viscosity
 
 Engine = Literal["srd", "mpc", "reference"]
+DEFAULT_ENGINE: Engine = "mpc"
 
 
 def check_engine(scene: Scene, engine: Engine) -> None:
@@ -59,7 +60,7 @@ def _viscosity_theory(scene: Scene) -> float | None:
     return viscosity(scene.density, scene.collision_time, scene.angle, scene.dimensions, rotation)
 
 
-def write_deck(scene: Scene, directory: Path, engine: Engine = "srd") -> None:
+def write_deck(scene: Scene, directory: Path, engine: Engine) -> None:
     """Write scene, manifest and, for LAMMPS, input script and what it reads into a folder.
 
     Raises:
@@ -71,11 +72,11 @@ def write_deck(scene: Scene, directory: Path, engine: Engine = "srd") -> None:
         json.dumps(manifest(scene, engine), indent=2) + "\n", encoding="utf-8"
     )
     if engine != "reference":
-        (directory / "in.lammps").write_text(script(scene, engine=engine), encoding="utf-8")
+        (directory / "in.lammps").write_text(script(scene, engine), encoding="utf-8")
         (mpc_deck if engine == "mpc" else srd_deck).write(scene, directory)
 
 
-def script(scene: Scene, start: Start | None = None, engine: Engine = "srd") -> str:
+def script(scene: Scene, engine: Engine, start: Start | None = None) -> str:
     """The input script; its last command is the `run`."""
     lines = (mpc_deck if engine == "mpc" else srd_deck).lines(scene, start or Start())
     return "\n".join(lines) + "\n"

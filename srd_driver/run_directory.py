@@ -116,7 +116,7 @@ def reopen(scene: Scene, engine: Engine, directory: Path, ranks: int) -> Progres
             cut_table(directory / "fluid_profile.dat", progress.step)
             replace_text(directory / "scene.toml", scene.toml())
             if engine != "reference":
-                replace_text(directory / "in.lammps", script(scene, engine=engine))
+                replace_text(directory / "in.lammps", script(scene, engine))
             _write_manifest(scene, engine, directory, ranks)
         except OSError as error:
             raise RunError(f"cannot write {directory}: {error.strerror or error}") from None

@@ -11,7 +11,7 @@ from typing import Any, Self, TextIO
 
 import lammps_plugin
 from lammps_inputs import Scene
-from lammps_inputs.deck import Engine, check_engine
+from lammps_inputs.deck import DEFAULT_ENGINE, Engine, check_engine
 from srd_driver import run_directory
 from srd_driver.errors import RunError
 from srd_driver.parallel import agree, communicator
@@ -45,7 +45,7 @@ class Simulation:
 
     Args:
         scene: what to simulate.
-        engine: `srd` (LAMMPS's own fix srd), `mpc` (our fix mpc) or `reference` (numpy).
+        engine: `mpc` (our fix mpc), `srd` (LAMMPS's own fix srd) or `reference` (numpy).
         directory: the run directory, new or empty; none: a temporary one, gone after `close`.
         resume: go on with the run in `directory` from its newest checkpoint, or begin it.
         checkpoint_interval: time between two checkpoints, in whole sampling intervals [t0].
@@ -60,7 +60,7 @@ class Simulation:
     def __init__(
         self,
         scene: Scene,
-        engine: Engine = "srd",
+        engine: Engine = DEFAULT_ENGINE,
         directory: str | Path | None = None,
         resume: bool = False,
         checkpoint_interval: float = 20.0,
@@ -69,7 +69,7 @@ class Simulation:
         self.engine = engine
         self._comm = communicator()
         if engine == "reference" and self._comm.size > 1:
-            raise RunError("the reference engine runs on one process; use --engine srd with mpirun")
+            raise RunError("the reference engine runs on one process; use --engine mpc with mpirun")
         require_engine(scene, engine)
         self._temporary: tempfile.TemporaryDirectory[str] | None = None
         self._lock: TextIO | None = None

@@ -39,7 +39,7 @@ def test_a_deck_of_every_scene_runs_with_plain_lmp(
     key: str, ranks: int, tmp_path: Path, command: Run
 ) -> None:
     one = scene(key)
-    write_deck(one, tmp_path)
+    write_deck(one, tmp_path, "srd")
     launcher = ["mpirun", "-np", str(ranks)] if ranks > 1 else []
     command(*launcher, "lmp", "-in", "in.lammps", cwd=tmp_path)
 
@@ -61,7 +61,7 @@ def test_a_deck_of_every_scene_runs_with_plain_lmp(
 
 
 def test_gravity_changes_on_the_command_line(tmp_path: Path, command: Run) -> None:
-    write_deck(scene("channel", gravity=0.1), tmp_path)
+    write_deck(scene("channel", gravity=0.1), tmp_path, "srd")
     drift = {}
     for gravity in ("0.1", "5.0"):
         command("lmp", "-in", "in.lammps", "-var", "gravity", gravity, cwd=tmp_path)
@@ -74,7 +74,7 @@ def test_gravity_changes_on_the_command_line(tmp_path: Path, command: Run) -> No
 def test_gravity_pulls_as_an_acceleration(tmp_path: Path, command: Run) -> None:
     """Without their fluid the colloids fall freely: their mean velocity gains g t."""
     one = scene("channel", gravity=2.0)
-    write_deck(one, tmp_path)
+    write_deck(one, tmp_path, "srd")
     deck = (tmp_path / "in.lammps").read_text().splitlines(keepends=True)
     dry = [line for line in deck if " srd " not in line and "wall/srd" not in line]
     (tmp_path / "in.lammps").write_text("".join(dry))
@@ -88,7 +88,7 @@ def test_gravity_pulls_as_an_acceleration(tmp_path: Path, command: Run) -> None:
 def test_the_fluid_of_a_poiseuille_deck_feels_its_gravity(tmp_path: Path, command: Run) -> None:
     """Without walls in reach, momentum grows by g t: here in the first two samples."""
     one = scene("poiseuille", gravity=0.5, width=50, length=8, duration=2)
-    write_deck(one, tmp_path)
+    write_deck(one, tmp_path, "srd")
     command("lmp", "-in", "in.lammps", cwd=tmp_path)
     speed = np.loadtxt(tmp_path / "observables.dat")[:2, 2]
     # the walls hold back a layer of depth sqrt(4 nu t) ~ 1.7 of 25 on each side
@@ -97,7 +97,7 @@ def test_the_fluid_of_a_poiseuille_deck_feels_its_gravity(tmp_path: Path, comman
 
 def test_decks_are_minimal() -> None:
     def commands(one: Scene) -> str:
-        return "\n".join(line.partition("#")[0] for line in script(one).splitlines())
+        return "\n".join(line.partition("#")[0] for line in script(one, "srd").splitlines())
 
     assert "gravity" not in commands(scene("channel", gravity=0.0))
     assert "wall/table" not in commands(scene("channel", wall_strength=0.0))
@@ -110,11 +110,11 @@ def test_decks_are_minimal() -> None:
 def test_every_seed_is_in_the_deck_and_follows_the_scene() -> None:
     one, other = scene("channel"), scene("channel", seed=2)
     seeds = srd_deck.seeds(one)
-    assert all(f"{name} index {value}" in script(one) for name, value in seeds.items())
+    assert all(f"{name} index {value}" in script(one, "srd") for name, value in seeds.items())
     assert set(seeds.values()).isdisjoint(srd_deck.seeds(other).values())
     # a resumed run must not draw the same numbers again
     assert set(seeds.values()).isdisjoint(srd_deck.seeds(one, step=1000).values())
-    resumed = script(one, Start(1000, "checkpoint.1000.restart"))
+    resumed = script(one, "srd", Start(1000, "checkpoint.1000.restart"))
     assert "read_restart checkpoint.1000.restart" in resumed
     assert "read_data" not in resumed
 

@@ -51,7 +51,10 @@ def test_settings_win_over_the_file(tmp_path: Path, command: Run) -> None:
         (["channel", "--set", "length=40.5"], "length = 40.5: a periodic length must be"),
         (["channel", "--set", "length"], "'length': must have the form field=value"),
         (["channel", "--scene", "none.toml"], "none.toml: "),
-        (["channel", "--set", "angle=120"], "angle = 120.0: fix srd rotates by 90"),
+        (
+            ["channel", "--engine", "srd", "--set", "angle=120"],
+            "angle = 120.0: fix srd rotates by 90",
+        ),
     ],
 )
 def test_bad_input_is_one_message_and_nothing_is_made(

@@ -78,7 +78,7 @@ def run_mpc(
     folder.mkdir(exist_ok=True)
     write_deck(scene, folder, "mpc")
     if start:
-        (folder / "in.lammps").write_text(script(scene, start, "mpc"))
+        (folder / "in.lammps").write_text(script(scene, "mpc", start))
     with (folder / "in.lammps").open("a") as deck:
         deck.write("fix_modify solvent save end.fluid\n")
         deck.write(
