@@ -12,8 +12,7 @@ import numpy as np
 import pytest
 from numpy.typing import NDArray
 
-from lammps_inputs import InitialState, make_scene
-from lammps_inputs.mpc_deck import fluid_file
+from lammps_inputs import make_scene
 from lammps_inputs.potentials import RepulsiveMie
 from srd_driver import Simulation
 from srd_driver.parallel import communicator
@@ -188,80 +187,6 @@ def test_colloids_have_the_temperature_of_the_fluid(lammps: Any) -> None:
     print(f"colloid temperature {ratio.mean():.4f} +- {error:.4f}")
     assert error < 0.02
     assert ratio.mean() == pytest.approx(1, abs=4 * error)
-
-
-def viscosity_theory(dimension: int, density: float, angle: float, time: float) -> float:
-    """Kinetic and collisional part, with Poisson occupation of the cells [a0^2/t0].
-
-    Kikuchi, Pooley, Ryder, Yeomans, J Chem Phys 119, 6388 (2003); Tuzel, Strauss, Ihle, Kroll,
-    Phys Rev E 68, 036701 (2003).
-    """
-    alpha = np.radians(angle)
-    colliding = density - 1 + np.exp(-density)
-    if dimension == 2:
-        kinetic = time * (density / (colliding * (1 - np.cos(2 * alpha))) - 0.5)
-        return float(kinetic + colliding / density * (1 - np.cos(alpha)) / (12 * time))
-    turned = 2 - np.cos(alpha) - np.cos(2 * alpha)
-    kinetic = time / 2 * (5 * density / (colliding * turned) - 1)
-    return float(kinetic + colliding / density * (1 - np.cos(alpha)) / (18 * time))
-
-
-def viscosity_measured(
-    lammps: Any, dimension: int, density: float, angle: float, time: float, size: tuple[int, ...]
-) -> float:
-    """From the decay of a shear wave v_x = 0.3 sin(k y) by a factor of about 4."""
-    random = np.random.default_rng(5)
-    count = round(density * np.prod(size))
-    positions = random.random((count, dimension)) * size
-    velocities = random.normal(size=positions.shape)
-    wave = 2 * np.pi / size[1]
-    velocities[:, 0] += 0.3 * np.sin(wave * positions[:, 1])
-    state = InitialState(positions, velocities, np.empty((0, 2)), np.empty((0, 2)))
-    Path("wave.fluid").write_bytes(fluid_file(state))
-    block = " ".join(f"0 {length}" for length in size) + (" -0.5 0.5" if dimension == 2 else "")
-    lammps.commands_string(
-        f"clear\nunits lj\ndimension {dimension}\nregion box block {block}\ncreate_box 1 box\n"
-        f"mass 1 1\ncomm_modify cutoff 1\ntimestep {time}\n"
-        f"fix fluid all mpc 1 NULL 1 1 7 load wave.fluid tstat layer angle {angle} "
-        f"{'axis random' if dimension == 3 else ''} bins {2 * size[1]}\nrun 10"
-    )
-    expected = viscosity_theory(dimension, density, angle, time)
-    looks = 40
-    every = max(1, round(1.4 / (expected * wave**2 * time * looks)))
-    times, amplitudes = [], []
-    for look in range(looks):
-        y, vx = (
-            np.array([lammps.extract_fix("fluid", 0, 2, row, column) for row in range(2 * size[1])])
-            for column in (0, 3)
-        )
-        times.append(look * every * time)
-        amplitudes.append(2 * (vx * np.sin(wave * y)).mean())
-        lammps.command(f"run {every} pre no post no")
-    slope = np.polyfit(times, np.log(amplitudes), 1, w=amplitudes)[0]
-    return float(-slope / wave**2)
-
-
-@pytest.mark.statistics
-@pytest.mark.parametrize(
-    ("dimension", "density", "angle", "time"),
-    [
-        (2, 10, 90, 0.1),
-        (2, 5, 130, 0.1),
-        (2, 5, 90, 0.1),
-        (2, 20, 120, 0.1),
-        (3, 10, 90, 0.1),
-        (3, 5, 130, 0.5),
-    ],
-)
-def test_viscosity(lammps: Any, dimension: int, density: int, angle: int, time: float) -> None:
-    size = (3000, 32) if dimension == 2 else (64, 24, 64)
-    measured = viscosity_measured(lammps, dimension, density, angle, time, size)
-    theory = viscosity_theory(dimension, density, angle, time)
-    print(f"viscosity {measured:.5f}, theory {theory:.5f}")
-    # theory assumes molecular chaos: at longer mean free paths in 2D the measured value is above it
-    # (2.5 % for 5, 130, 0.2; 3.4 % for 20, 60, 1.0), as the correlations of 2D flow would have it
-    # thermal noise of the wave, sqrt(2 / N) of 0.3, shifts the slope by less than 1 %
-    assert measured == pytest.approx(theory, rel=0.02)
 
 
 @pytest.mark.statistics
