@@ -61,15 +61,25 @@ def test_fluid_stays_between_walls_that_are_no_whole_number_of_cells() -> None:
     assert abs(engine.fluid_temperature() - 1) < 0.2
 
 
-def parabola(scene: Poiseuille) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
-    """Curvature and wall value of v_x = slip + curvature y (L_y - y), from 20 blocks, (20,) each.
+def fit_parabola(
+    profiles: NDArray[np.float64], width: float
+) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
+    """Curvature and wall value of v_x = slip + curvature y (L_y - y) of each profile.
 
-    Fitted to half-cell bins, without the cell next to each wall.
+    Args:
+        profiles: v_x in half-cell bins, (K, bins); the cell next to each wall is left out.
     """
+    y = (np.arange(profiles.shape[1]) + 0.5) / 2
+    basis = np.stack([y * (width - y), np.ones_like(y)]).T[2:-2]
+    curvature, slip = np.linalg.lstsq(basis, profiles[:, 2:-2].T, rcond=None)[0]
+    return curvature, slip
+
+
+def parabola(scene: Poiseuille) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
+    """Curvature and slip from 20 blocks of time, (20,) each."""
     engine = ReferenceEngine(scene)
     engine.advance(round(scene.equilibration / scene.collision_time))
     bins = round(2 * scene.width)
-    y = (np.arange(bins) + 0.5) / 2
     profiles = []
     for _ in range(20):
         momentum, count = np.zeros(bins), np.zeros(bins)
@@ -78,10 +88,8 @@ def parabola(scene: Poiseuille) -> tuple[NDArray[np.float64], NDArray[np.float64
             bin_ = np.minimum((2 * engine.fluid_positions[:, 1]).astype(int), bins - 1)
             momentum += np.bincount(bin_, engine.fluid_velocities[:, 0], bins)
             count += np.bincount(bin_, minlength=bins)
-        profiles.append((momentum / count)[2:-2])
-    basis = np.stack([y * (scene.width - y), np.ones(bins)]).T[2:-2]
-    curvature, slip = np.linalg.lstsq(basis, np.transpose(profiles), rcond=None)[0]
-    return curvature, slip
+        profiles.append(momentum / count)
+    return fit_parabola(np.array(profiles), scene.width)
 
 
 @pytest.mark.statistics
