@@ -81,5 +81,21 @@ def local_zigzag(y: Array) -> Array:
     return np.asarray(kink * _signs(y.shape[1])[1:-1])
 
 
+def zigzag_place(local: Array) -> Array:
+    """Where along the chain the zigzag is: the mean colloid number, weighted by its square.
+
+    Args:
+        local: from `local_zigzag`, head first, (T, N - 2) [a0].
+
+    Returns:
+        (T,), from 1 if all of it is at the second colloid from the head to N - 2 at the other end;
+        NaN where the chain is straight.
+    """
+    weights = local**2
+    total = weights.sum(axis=1)
+    moment = weights @ np.arange(1, local.shape[1] + 1)
+    return np.asarray(np.divide(moment, total, out=np.full_like(total, np.nan), where=total > 0))
+
+
 def _signs(count: int) -> Array:
     return np.asarray(1.0 - 2.0 * (np.arange(count) % 2), dtype=float)

@@ -192,6 +192,20 @@ class RunDirectory:
         """Time of engine steps [t0]."""
         return np.asarray(steps * self.time_step, dtype=float)
 
+    def sampled(self, steps: Steps) -> NDArray[np.bool_]:
+        """Which of the intervals that end at these steps lie after the equilibration.
+
+        Raises:
+            RunDirectoryError: when none does.
+        """
+        used = steps - int(self.manifest["sample_steps"]) >= self.equilibration_steps
+        if not used.any():
+            raise RunDirectoryError(
+                f"{self.path}: no frames after the equilibration: it ends at step "
+                f"{self.equilibration_steps}, the output at step {steps[-1]}"
+            )
+        return np.asarray(used)
+
     @property
     def has_colloids(self) -> bool:
         """Whether the scene has colloids, and so a trajectory."""

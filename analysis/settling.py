@@ -1,9 +1,49 @@
 """Settling speed of the colloids, at rest and in the co-moving frame (tabatabaei-2009, 4.2)."""
 
+from dataclasses import dataclass
+
 import numpy as np
 from numpy.typing import NDArray
 
+from analysis.run_directory import RunDirectory, RunDirectoryError
+
 Array = NDArray[np.float64]
+
+
+@dataclass(frozen=True)
+class SettlingSeries:
+    """Mean speed of the colloids along x over each sampling interval of a run.
+
+    Attributes:
+        times: ends of the intervals, (K,) [t0].
+        rest, co_moving: in the frame at rest and in that of zero momentum (4.9), (K,) [a0/t0].
+        used: which intervals lie after the equilibration, (K,).
+    """
+
+    times: Array
+    rest: Array
+    co_moving: Array
+    used: NDArray[np.bool_]
+
+
+def settling_series(run: RunDirectory) -> SettlingSeries:
+    """Reads the settling speed of a run with colloids.
+
+    Raises:
+        RunDirectoryError: when its files cannot be read, or nothing lies after the equilibration.
+    """
+    observables = run.observables
+    rest = settling_speed(run.colloids.positions[:, :, 0], run.interval)
+    count = min(len(rest), len(observables.steps))  # a run in progress may be ahead in one file
+    rest, steps = rest[:count], observables.steps[:count]
+    if count == 0:
+        raise RunDirectoryError(f"{run.path}: no complete sampling interval yet")
+    return SettlingSeries(
+        run.times(steps),
+        rest,
+        co_moving(rest, observables.mean_velocity_x[:count]),
+        run.sampled(steps),
+    )
 
 
 def settling_speed(x: Array, interval: float) -> Array:

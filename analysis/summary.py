@@ -16,7 +16,7 @@ from analysis.blocking import Estimate
 from analysis.diffusion import diffusion
 from analysis.pair_correlation import pair_correlation
 from analysis.run_directory import RunDirectory, RunDirectoryError
-from analysis.settling import co_moving, settling_speed
+from analysis.settling import settling_series
 from analysis.shear_wave import decay_viscosity, wave_amplitude
 from analysis.temperature import colloid_temperature
 
@@ -76,7 +76,7 @@ def estimates(summary: Mapping[str, Any]) -> dict[str, dict[str, Any]]:
 def _whole_run(run: RunDirectory) -> dict[str, Any]:
     """What every scene has."""
     observables = run.observables
-    used = _sampled(run, observables.steps)
+    used = run.sampled(observables.steps)
     temperature = blocking.mean(observables.fluid_temperature[used])
     return {
         "scene": run.manifest["scene"],
@@ -92,17 +92,6 @@ def _whole_run(run: RunDirectory) -> dict[str, Any]:
     }
 
 
-def _sampled(run: RunDirectory, steps: NDArray[np.int64]) -> NDArray[np.bool_]:
-    """Which of the intervals that end at these steps lie after the equilibration."""
-    used = steps - int(run.manifest["sample_steps"]) >= run.equilibration_steps
-    if not used.any():
-        raise RunDirectoryError(
-            f"{run.path}: no frames after the equilibration: it ends at step "
-            f"{run.equilibration_steps}, the output at step {steps[-1]}"
-        )
-    return np.asarray(used)
-
-
 def _with_theory(viscosity: Estimate, run: RunDirectory) -> dict[str, Any]:
     return viscosity.as_json() | {"theory": run.viscosity_theory}
 
@@ -110,7 +99,7 @@ def _with_theory(viscosity: Estimate, run: RunDirectory) -> dict[str, Any]:
 def _slit_flow(run: RunDirectory, results: Results) -> None:
     """Profile and Reynolds number; where gravity drives the fluid, the parabola's viscosity."""
     fluid, width = run.fluid_profile, run.number("width")
-    used = _sampled(run, fluid.steps)
+    used = run.sampled(fluid.steps)
     counts, velocity = fluid.counts[used], fluid.velocity_x[used]
     fit = None
     if run.manifest["scene"] == "poiseuille":
@@ -165,7 +154,7 @@ def _ratio(numerator: Array, denominator: Array) -> Estimate:
 
 def _shear_wave(run: RunDirectory, results: Results) -> None:
     fluid, width = run.fluid_profile, run.number("width")
-    used = _sampled(run, fluid.steps)
+    used = run.sampled(fluid.steps)
     amplitude = wave_amplitude(fluid.y, width, fluid.counts, fluid.velocity_x)
     viscosity = decay_viscosity(amplitude[used], run.interval, run.fluid_looks, width)
     results.summary["viscosity"] = _with_theory(viscosity, run)
@@ -208,16 +197,12 @@ def _colloids(run: RunDirectory, results: Results) -> None:
 
 
 def _settling(run: RunDirectory, results: Results) -> None:
-    colloids, observables = run.colloids, run.observables
-    rest = settling_speed(colloids.positions[:, :, 0], run.interval)
-    count = min(len(rest), len(observables.steps))  # a run in progress may be ahead in one file
-    rest, steps = rest[:count], observables.steps[:count]
-    moving = co_moving(rest, observables.mean_velocity_x[:count])
-    used = _sampled(run, steps)
-    results.summary["settling_speed"] = blocking.mean(moving[used]).as_json()
-    results.summary["settling_speed_rest"] = blocking.mean(rest[used]).as_json()
+    series = settling_series(run)
+    moving, rest = (blocking.mean(v[series.used]) for v in (series.co_moving, series.rest))
+    results.summary["settling_speed"] = moving.as_json()
+    results.summary["settling_speed_rest"] = rest.as_json()
     results.figures["settling_speed.png"] = figures.settling(
-        run.times(steps), rest, moving, run.equilibration_time
+        series.times, series.rest, series.co_moving, run.equilibration_time
     )
 
 

@@ -1,0 +1,34 @@
+"""Figures of S. Tabatabaei's thesis on colloids in a narrow channel (2009).
+
+| module | figures |
+|---|---|
+| `lattice_shocks` | 2.1 and 2.2, with a running shock |
+| `flow` | 3.6 and 3.7, Poiseuille flow |
+| `settling` | 4.3 to 4.8 and 5.1, settling speed against volume fraction |
+| `field` | 4.9 and 4.10, against gravity |
+| `chain_release` | 4.12 to 4.14, the released chain |
+
+Units: a0 = kBT = m_f = 1.
+"""
+
+from narrows.reproduce.paper_figure import Paper
+from narrows.reproduce.tabatabaei_2009 import (
+    chain_release,
+    field,
+    flow,
+    lattice_shocks,
+    settling,
+)
+
+PAPER = Paper(
+    "tabatabaei-2009",
+    "Tabatabaei (2009): shocks of lattice gases, and colloids in a narrow channel",
+    (
+        *lattice_shocks.FIGURES,
+        *flow.FIGURES,
+        *settling.FIGURES,
+        *field.FIGURES,
+        *chain_release.FIGURES,
+        settling.FIGURE_5_1,
+    ),
+)

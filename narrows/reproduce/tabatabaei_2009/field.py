@@ -1,0 +1,166 @@
+"""Figs. 4.9 and 4.10: three colloids in 40 x 10 under ever stronger gravity."""
+
+import numpy as np
+
+from analysis import RunDirectory, blocking, flow
+from analysis.blocking import Estimate
+from lammps_inputs.viscosity import viscosity
+from narrows.reproduce.drawing import SPEED, one_panel, paper_line, paper_remark, points
+from narrows.reproduce.paper_figure import Column, Folders, Outcome, PaperFigure, Quality
+from narrows.reproduce.results import PaperNumber, claimed, compared, measured
+from narrows.reproduce.tabatabaei_2009.state_points import (
+    Point,
+    difference,
+    fit,
+    point,
+    scenes_of,
+    speed,
+)
+
+SLOPE = PaperNumber.printed("0.34")
+SPEED_AT_0_1 = PaperNumber.printed("0.034")  # the line at g = 0.1
+WIDE, NARROW = 2.0, 1.2  # sigma_w
+GRAVITY = "gravity $g$  [$a_0/t_0^2$]"
+
+
+def _gravities(quality: Quality) -> list[float]:
+    if quality == "quick":
+        return [0.04, 0.1, 0.2]
+    return [round(0.02 * step, 2) for step in range(1, 11)]
+
+
+def field_points(wall_sigma: float, quality: Quality) -> list[Point]:
+    """One point for each gravity."""
+    seeds = 3 if quality == "full" else 1
+    return [
+        point(40, 3, seeds, gravity=gravity, wall_sigma=wall_sigma)
+        for gravity in _gravities(quality)
+    ]
+
+
+def _reynolds(folders: Folders, where: Point) -> Estimate:
+    """(4.11) of the fluid's mean velocity and the viscosity of theory."""
+    velocities = []
+    for scene in where.scenes:
+        run = RunDirectory(folders[scene])
+        fluid = run.fluid_profile
+        used = run.sampled(fluid.steps)
+        velocities.append(flow.mean_velocity(fluid.counts[used], fluid.velocity_x[used]))
+    scene = where.scenes[0]
+    nu = viscosity(scene.density, scene.collision_time, scene.angle)
+    scale = flow.reynolds_number(1.0, scene.width, nu)
+    return blocking.mean(np.concatenate(velocities)).scaled(scale)
+
+
+def _figure_4_9(folders: Folders, quality: Quality) -> Outcome:
+    gravities = _gravities(quality)
+    numbers = [_reynolds(folders, where) for where in field_points(WIDE, quality)]
+    line = fit(gravities, numbers)
+    figure, axes = one_panel(GRAVITY, r"Reynolds number  $\langle v \rangle L_y / \nu$")
+    points(axes, gravities, numbers, label="40 x 10, three colloids")
+    assert line[0].value is not None
+    assert line[1].value is not None
+    ends = np.array([0.0, 0.21])
+    axes.plot(ends, line[0].value + line[1].value * ends, label=f"line, slope {line[1].value:.3f}")
+    paper_remark(axes, 0.05, 0.72, "thesis: linear in $g$,\nand well below 1")
+    axes.set(xlim=(0, 0.21), ylim=(0, None))
+    axes.legend(loc="upper left")
+    strongest = numbers[-1]
+    results = [
+        measured("4.9", "Reynolds number at g = 0.2", strongest),
+        claimed(
+            "4.9",
+            "1 less the Reynolds number at g = 0.2",
+            difference(Estimate(1.0, 0.0), strongest),
+            "small enough for laminar flow",
+            "positive",
+        ),
+        claimed(
+            "4.9",
+            "Reynolds number at g = 0 of a line through the points",
+            line[0],
+            "proportional to g",
+            "zero",
+        ),
+    ]
+    table: dict[str, Column] = {
+        "gravity": gravities,
+        "reynolds_number": [number.value for number in numbers],
+        "error": [number.error for number in numbers],
+    }
+    return Outcome(figure, table, results)
+
+
+def _figure_4_10(folders: Folders, quality: Quality) -> Outcome:
+    gravities = _gravities(quality)
+    wide, narrow = (
+        [speed(folders, where).co_moving for where in field_points(sigma, quality)]
+        for sigma in (WIDE, NARROW)
+    )
+    figure, axes = one_panel(GRAVITY, SPEED)
+    for number, (sigma, found) in enumerate(((WIDE, wide), (NARROW, narrow))):
+        points(axes, gravities, found, number, label=rf"$\sigma_w$ = {sigma:g}")
+    intercept, slope = fit(gravities, wide)
+    assert slope.value is not None
+    assert intercept.value is not None
+    ends = np.array([0.0, 0.21])
+    label = rf"our fit for $\sigma_w$ = 2: slope {slope.value:.3f}"
+    axes.plot(ends, intercept.value + slope.value * ends, color="0.25", label=label)
+    paper_line(axes, ends, SLOPE.value * ends, "thesis: slope 0.34")
+    axes.set(xlim=(0, 0.21), ylim=(0, None))
+    axes.legend(loc="upper left")
+    results = [
+        compared("4.10", "slope dv_s/dg, sigma_w = 2.0 [t0]", slope, SLOPE),
+        compared(
+            "4.10",
+            "v_s at g = 0.1, sigma_w = 2.0 [a0/t0]",
+            wide[gravities.index(0.1)],
+            SPEED_AT_0_1,
+            "the thesis' line at g = 0.1",
+        ),
+    ]
+    if len(gravities) > 3:
+        results += [
+            claimed(
+                "4.10",
+                "coefficient of g^2, sigma_w = 2.0 [t0^3/a0]",
+                fit(gravities, wide, 2)[2],
+                "perfect linear increase",
+                "zero",
+            ),
+            measured(
+                "4.10", "coefficient of g^2, sigma_w = 1.2 [t0^3/a0]", fit(gravities, narrow, 2)[2]
+            ),
+        ]
+    results.append(
+        measured(
+            "4.10",
+            "v_s at g = 0.2, sigma_w = 1.2 less 2.0 [a0/t0]",
+            difference(narrow[-1], wide[-1]),
+            "the thesis: a small deviation from the line for sigma_w = 1.2",
+        )
+    )
+    table: dict[str, Column] = {
+        "gravity": gravities,
+        "v_s_sigma_w_2.0": [found.value for found in wide],
+        "error_2.0": [found.error for found in wide],
+        "v_s_sigma_w_1.2": [found.value for found in narrow],
+        "error_1.2": [found.error for found in narrow],
+    }
+    return Outcome(figure, table, results)
+
+
+FIGURES = (
+    PaperFigure(
+        "4.9",
+        "Reynolds number of the fluid against gravity, 40 x 10, three colloids.",
+        _figure_4_9,
+        lambda quality: scenes_of(field_points(WIDE, quality)),
+    ),
+    PaperFigure(
+        "4.10",
+        "Settling speed against gravity for two diameters of the wall's repulsion.",
+        _figure_4_10,
+        lambda quality: scenes_of([*field_points(WIDE, quality), *field_points(NARROW, quality)]),
+    ),
+)

@@ -1,0 +1,112 @@
+"""State points of the settling colloids: runs that differ in their seed, and their mean speed.
+
+A run is the time from 100 to 1100 t0 after the release of an evenly spaced chain on the mid-line.
+The window matters: the thesis equilibrates for 1e5 steps, which is 100 t0 with its tau_MD of 0.001,
+and the colloids keep near the mid-line for about a thousand more.
+"""
+
+import math
+from collections.abc import Iterable, Sequence
+from dataclasses import dataclass
+from functools import cache
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+from numpy.typing import ArrayLike
+
+from analysis import RunDirectory, blocking
+from analysis.blocking import Estimate
+from analysis.line_fit import fit_polynomial
+from analysis.settling import SettlingSeries, settling_series
+from lammps_inputs import Channel, Scene
+from narrows.reproduce.paper_figure import Folders
+
+SAMPLING = 3.0  # [t0]
+
+
+@dataclass(frozen=True)
+class Point:
+    """A state point: runs that differ in their seed only."""
+
+    scenes: tuple[Channel, ...]
+
+    @property
+    def length(self) -> float:
+        """L_x [a0]."""
+        return self.scenes[0].length
+
+    @property
+    def colloids(self) -> int:
+        """N_c."""
+        return self.scenes[0].colloids
+
+    @property
+    def density(self) -> float:
+        """Number density N_c / (L_x L_y) [1/a0^2]."""
+        return self.colloids / (self.length * self.scenes[0].width)
+
+    @property
+    def fraction(self) -> float:
+        """Volume fraction phi, of disks in the plane (4.2)."""
+        return math.pi * self.scenes[0].colloid_radius ** 2 * self.density
+
+
+def point(length: int, colloids: int, seeds: int, duration: float = 1000.0, **fields: Any) -> Point:
+    """The thesis' parameters (Table 3.1 and 4.4), in a channel of this length."""
+    return Point(
+        tuple(
+            Channel.make(
+                length=length,
+                colloids=colloids,
+                duration=duration,
+                sampling_interval=SAMPLING,
+                seed=seed,
+                **fields,
+            )
+            for seed in range(1, seeds + 1)
+        )
+    )
+
+
+@cache
+def _series(folder: Path) -> SettlingSeries:
+    return settling_series(RunDirectory(folder))
+
+
+@dataclass(frozen=True)
+class Speed:
+    """Settling speed of a point in the co-moving frame (4.9) and in the frame at rest."""
+
+    point: Point
+    co_moving: Estimate
+    rest: Estimate
+
+
+def speed(folders: Folders, where: Point) -> Speed:
+    """Mean over time and seeds, with the error of the blocks of all seeds one after the other."""
+    series = [_series(folders[scene]) for scene in where.scenes]
+    moving = np.concatenate([run.co_moving[run.used] for run in series])
+    rest = np.concatenate([run.rest[run.used] for run in series])
+    return Speed(where, blocking.mean(moving), blocking.mean(rest))
+
+
+def scenes_of(all_points: Iterable[Point]) -> list[Scene]:
+    """Every run of the points."""
+    return [scene for where in all_points for scene in where.scenes]
+
+
+def difference(one: Estimate, other: Estimate) -> Estimate:
+    """Of two independent numbers."""
+    assert one.value is not None
+    assert other.value is not None
+    errors = [one.error, other.error]
+    if None in errors:
+        return Estimate(one.value - other.value, None, one.reason or other.reason)
+    return Estimate(one.value - other.value, math.hypot(*(error or 0.0 for error in errors)))
+
+
+def fit(x: ArrayLike, y: Sequence[Estimate], degree: int = 1) -> list[Estimate]:
+    """Coefficients of 1, x, x^2, ... of a polynomial through measured points."""
+    values, errors = [one.value for one in y], [one.error for one in y]
+    return fit_polynomial(x, np.array(values, float), np.array(errors, float), degree)
