@@ -3,6 +3,7 @@
 from collections.abc import Sequence
 from typing import Any
 
+from matplotlib import colormaps
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
@@ -41,6 +42,11 @@ def one_panel(x_label: str, y_label: str, size: tuple[float, float] = (6.2, 4.1)
     axes = figure.subplots()
     axes.set(xlabel=x_label, ylabel=y_label)
     return figure, axes
+
+
+def shades(count: int) -> list[tuple[float, ...]]:
+    """Colours of an ordered series, from dark to light."""
+    return [tuple(colormaps["viridis"](0.9 * i / max(1, count - 1))) for i in range(count)]
 
 
 def points(

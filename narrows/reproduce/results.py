@@ -97,7 +97,7 @@ def compared(
         joint = (value.error**2 + (paper.error or 0.0) ** 2) ** 0.5
         rounding = 1e-9 * abs(paper.value)
         allowed = SIGNIFICANT * joint + paper.reading + rounding
-        agrees = abs(value.value - paper.value) <= allowed
+        agrees = bool(abs(value.value - paper.value) <= allowed)
     return Result(figure, quantity, value, paper, None, agrees, note)
 
 
@@ -113,9 +113,9 @@ def claimed(
     if value.value is not None and value.error is not None:
         reach = SIGNIFICANT * value.error
         if sign == "zero":
-            agrees = abs(value.value) <= reach
+            agrees = bool(abs(value.value) <= reach)
         elif abs(value.value) > reach:
-            agrees = value.value > 0
+            agrees = bool(value.value > 0)
     return Result(figure, quantity, value, None, claim, agrees, note)
 
 

@@ -60,3 +60,11 @@ def test_zigzags_of_opposite_phase_cancel_in_the_mean_and_show_locally():
 def test_sloping_chain_has_no_local_zigzag():
     y = np.linspace(3.0, 7.0, 9)[None]
     assert chain.local_zigzag(y) == pytest.approx(np.zeros((1, 7)), abs=1e-14)
+
+
+def test_place_of_the_zigzag_by_hand():
+    # squares 9, 0, 1 at the inner colloids 1, 2, 3 from the head: (9 + 3)/10
+    local = np.array([[3.0, 0.0, -1.0], [0.0, 0.0, 2.0], [0.0, 0.0, 0.0]])
+    place = chain.zigzag_place(local)
+    assert place[:2] == pytest.approx([1.2, 3.0])
+    assert np.isnan(place[2])

@@ -1,8 +1,10 @@
 import numpy as np
 import pytest
 
-from analysis.settling import co_moving, settling_speed
+from analysis import RunDirectory
+from analysis.settling import co_moving, settling_series, settling_speed
 from analysis.temperature import colloid_temperature
+from tests.analysis.run_writer import write_channel
 
 
 def test_ballistic_colloids():
@@ -29,3 +31,15 @@ def test_temperature_is_free_of_the_drift():
     # variance of the mean of 40000 squared normal deviates: 2/40000; 4.4 deviations (1e-5)
     found = colloid_temperature(velocities, mass).mean()
     assert found == pytest.approx(1.0, abs=4.4 * np.sqrt(2 / samples))
+
+
+def test_series_of_a_run(tmp_path):
+    # output each t = 1, equilibration to t = 5: of 9 intervals the last 4 lie after it
+    times = np.arange(10.0)[:, None, None]
+    positions = np.array([[5.0, 5.0]]) + times * [0.25, 0.0]  # exact in float32
+    write_channel(tmp_path / "run", positions, np.zeros((10, 1, 2)), np.full(9, 0.1))
+    series = settling_series(RunDirectory(tmp_path / "run"))
+    assert series.times == pytest.approx(np.arange(1.0, 10.0))
+    assert series.rest == pytest.approx(np.full(9, 0.25))
+    assert series.co_moving == pytest.approx(np.full(9, 0.15))
+    assert series.used.tolist() == [False] * 5 + [True] * 4

@@ -16,7 +16,7 @@ from numpy.typing import NDArray
 from analysis import RunDirectory, blocking, chain
 from analysis.blocking import Estimate
 from lammps_inputs import Channel
-from narrows.reproduce.drawing import PAPER, one_panel, paper_remark
+from narrows.reproduce.drawing import PAPER, one_panel, paper_remark, shades
 from narrows.reproduce.paper_figure import Column, Folders, Outcome, PaperFigure, Quality
 from narrows.reproduce.results import Result, claimed, measured
 from narrows.reproduce.tabatabaei_2009.state_points import difference, fit
@@ -98,7 +98,7 @@ def _draw_spacings(runs: Sequence[Released]) -> Figure:
     groups = np.array([run.groups for run in runs])
     times, mean = runs[0].times, groups.mean(axis=0)
     error = groups.std(axis=0, ddof=1) / np.sqrt(len(runs))
-    colours = _colours(mean.shape[1])
+    colours = shades(mean.shape[1])
     for group in range(mean.shape[1]):
         end = {0: " (head)", mean.shape[1] - 1: " (tail)"}.get(group, "")
         low, high = mean[:, group] - error[:, group], mean[:, group] + error[:, group]
@@ -108,12 +108,6 @@ def _draw_spacings(runs: Sequence[Released]) -> Figure:
     axes.set_xlim(0, times[-1])
     axes.legend(loc="upper left", ncols=2)
     return figure
-
-
-def _colours(count: int) -> list[tuple[float, ...]]:
-    from matplotlib import colormaps
-
-    return [tuple(colormaps["viridis"](0.95 * i / max(1, count - 1))) for i in range(count)]
 
 
 def _spacing_table(runs: Sequence[Released]) -> dict[str, list[float]]:

@@ -34,7 +34,7 @@ class Slit:
             width=self.width,
             density=self.density,
             duration=duration,
-            sampling_interval=5.0,
+            sampling_interval=50.0,
         )
 
     def scenes(self, quality: Quality) -> list[Scene]:
@@ -44,11 +44,11 @@ class Slit:
 
 SLITS = (
     Slit(
-        *("3.6", 25, 25, 10.0, 60_000.0, 8_000.0),
+        *("3.6", 25, 25, 10.0, 100_000.0, 12_000.0),
         *(PaperNumber.printed("0.729"), PaperNumber.printed("0.755")),
     ),
     Slit(
-        *("3.7", 20, 10, 5.0, 200_000.0, 20_000.0),
+        *("3.7", 20, 10, 5.0, 1_000_000.0, 40_000.0),
         *(PaperNumber.printed("0.6179"), PaperNumber.printed("0.6802")),
     ),
 )

@@ -13,11 +13,11 @@ from lattice.completion import ShockModel, complete_shock
 from lattice.models import Vector
 from lattice.monte_carlo import Ensemble, estimate_walk, shock_evidence, simulate
 from lattice.shocks import hopping_rates, shock_marginals
-from narrows.reproduce.drawing import COLOURS, PAPER
+from narrows.reproduce.drawing import PAPER, shades
 from narrows.reproduce.paper_figure import Folders, Outcome, PaperFigure, Quality
 from narrows.reproduce.results import PaperNumber, compared
 
-SITES, SEED = 2000, 1
+SITES, SEED = 1000, 1
 SHOWN = 4  # profiles
 
 
@@ -35,9 +35,9 @@ class RunningShock:
 
 
 def _two_phases() -> ShockModel:
-    """Internal states, p/q = z2/z1 = 3 (2.109)-(2.111)."""
-    given = {"h1": 0.2, "h3": 0.8, "r1": 0.3, "r2": 0.2, "r4": 0.2, "c": 0.5}
-    return complete_shock("internal-state", 0.5, 1.5, given)
+    """Internal states, p/q = z2/z1 = 4 (2.109)-(2.111)."""
+    given = {"h1": 0.2, "h3": 1.1, "r1": 0.3, "r2": 0.2, "r4": 0.2, "c": 0.5}
+    return complete_shock("internal-state", 0.1, 0.4, given)
 
 
 def _walk_of_two_phases(model: ShockModel) -> tuple[float, float]:
@@ -64,12 +64,12 @@ def _walk_of_one_sided(model: ShockModel) -> tuple[float, float]:
 SHOCKS = (
     RunningShock(
         "2.1",
-        "A shock between two fugacities random-walks; internal-state family, p/q = z2/z1 = 3.",
+        "A shock between two fugacities random-walks; internal-state family, p/q = z2/z1 = 4.",
         r"particle density $\rho$",
         _two_phases,
         _walk_of_two_phases,
         ("(2.115)", "(2.116)"),
-        1000,
+        300,
     ),
     RunningShock(
         "2.2",
@@ -78,7 +78,7 @@ SHOCKS = (
         _one_sided,
         _walk_of_one_sided,
         ("(2.76)", "(2.76)"),
-        1400,
+        800,
     ),
 )
 
@@ -134,24 +134,25 @@ def _draw(shock: RunningShock, model: ShockModel, ensemble: Ensemble, velocity: 
     figure = Figure(figsize=(9.4, 3.9), layout="constrained")
     profiles, space_time = figure.subplots(1, 2)
     sites = np.arange(1, SITES + 1)
-    width = 20
+    width = 10
     coarse = sites.reshape(-1, width).mean(axis=1)
-    for colour, sample in zip(COLOURS, _samples(ensemble), strict=False):
+    samples = _samples(ensemble)
+    for colour, sample in zip(shades(len(samples)), samples, strict=True):
         time = float(ensemble.times[sample])
         density = (ensemble.occupation[sample] @ gas.conserved).reshape(-1, width).mean(axis=1)
         profiles.plot(coarse, density, ".", markersize=4, color=colour, label=f"$t$ = {time:g}")
         right = _right_of_shock(shock.start, hops, time)
         step = gas.density(model.z1) * (1 - right) + gas.density(model.z2) * right
-        exact = "exact mixture of shock measures" if time == 0 else "_"
+        exact = "exact mixture of shock measures" if sample == samples[-1] else "_"
         profiles.plot(sites, step, color="0.2", linewidth=0.9, label=exact)
     for number, z in ((1, model.z1), (2, model.z2)):
         label = f"thesis: phase $z_{number}$ = {z:g}"
         style = {"color": PAPER, "linestyle": "--" if number == 1 else ":", "linewidth": 1.2}
         profiles.axhline(gas.density(z), label=label, **style)
     profiles.set(xlabel="site $k$", ylabel=shock.density, xlim=(0, SITES))
-    profiles.legend(fontsize=7.5)
+    profiles.legend(fontsize=8, loc="upper left", bbox_to_anchor=(0.0, 0.93))
 
-    block = 10
+    block = 20
     history = gas.conserved[ensemble.history].reshape(len(ensemble.times), -1, block).mean(axis=2)
     image = space_time.imshow(
         history,
@@ -170,9 +171,7 @@ def _draw(shock: RunningShock, model: ShockModel, ensemble: Ensemble, velocity: 
     label = f"thesis: $v_s$ = {velocity:.3f}"
     space_time.plot(expected, ensemble.times, "--", color=PAPER, lw=1.6, label=label)
     space_time.set(xlabel="site $k$", ylabel="time $t$")
-    legend = space_time.legend(loc="upper right", frameon=True, framealpha=0.85, facecolor="0.5")
-    for text in legend.get_texts():
-        text.set_color("white")
+    space_time.legend(loc="upper right", frameon=True, framealpha=0.8, facecolor="0.75")
     return figure
 
 

@@ -1,0 +1,46 @@
+"""A paper of two small figures that share a run, to try the machinery; run as a program, too."""
+
+import sys
+from pathlib import Path
+
+from analysis import RunDirectory
+from analysis.blocking import Estimate
+from lammps_inputs import Channel
+from narrows.reproduce.drawing import one_panel
+from narrows.reproduce.paper_figure import Outcome, Paper, PaperFigure
+from narrows.reproduce.results import PaperNumber, compared
+from narrows.reproduce.session import Plan, carry_out
+
+
+def scene(seed, duration=3.0):
+    return Channel.make(
+        length=20, colloids=1, duration=duration, equilibration=0, sampling_interval=0.3, seed=seed
+    )
+
+
+def place(number, seeds, duration):
+    """A figure of the last place of the colloid in runs of these seeds."""
+
+    def make(folders, quality):
+        last = [
+            RunDirectory(folders[scene(seed, duration)]).colloids.positions[-1, 0, 0]
+            for seed in seeds
+        ]
+        figure, axes = one_panel("seed", "place")
+        axes.plot(seeds, last, "o")
+        result = compared(number, "place <of> seed", Estimate(last[0], 10.0), PaperNumber(10.0))
+        return Outcome(figure, {"seed": list(seeds), "place": last}, [result])
+
+    return PaperFigure(
+        number, "Where it is & was.", make, lambda quality: [scene(s, duration) for s in seeds]
+    )
+
+
+def paper(duration=3.0):
+    figures = (place("1", (1, 2), duration), place("2", (2, 3), duration))
+    return Paper("tiny", "A <tiny> paper", figures)
+
+
+if __name__ == "__main__":
+    whole = paper(float(sys.argv[2]))
+    carry_out(Plan(whole, whole.figures, "quick", Path(sys.argv[1])), jobs=2)
