@@ -86,7 +86,7 @@ SHOCKS = (
 def _make(shock: RunningShock, folders: Folders, quality: Quality) -> Outcome:
     model = shock.model()
     gas = model.gas()
-    replicas, end = (200, 800.0) if quality == "full" else (60, 400.0)
+    replicas, end = (400, 800.0) if quality == "full" else (100, 400.0)
     times = np.linspace(0, end, 41)
     ensemble = simulate(
         gas,
@@ -131,10 +131,10 @@ def _samples(ensemble: Ensemble) -> list[int]:
 def _draw(shock: RunningShock, model: ShockModel, ensemble: Ensemble, velocity: float) -> Figure:
     gas = model.gas()
     hops = hopping_rates(gas, model.z1, model.z2)
-    figure = Figure(figsize=(9.4, 3.9), layout="constrained")
+    figure = Figure(figsize=(9.4, 4.2), layout="constrained")
     profiles, space_time = figure.subplots(1, 2)
     sites = np.arange(1, SITES + 1)
-    width = 10
+    width = 20
     coarse = sites.reshape(-1, width).mean(axis=1)
     samples = _samples(ensemble)
     for colour, sample in zip(shades(len(samples)), samples, strict=True):
@@ -150,7 +150,7 @@ def _draw(shock: RunningShock, model: ShockModel, ensemble: Ensemble, velocity: 
         style = {"color": PAPER, "linestyle": "--" if number == 1 else ":", "linewidth": 1.2}
         profiles.axhline(gas.density(z), label=label, **style)
     profiles.set(xlabel="site $k$", ylabel=shock.density, xlim=(0, SITES))
-    profiles.legend(fontsize=8, loc="upper left", bbox_to_anchor=(0.0, 0.93))
+    profiles.legend(fontsize=8, loc="lower center", bbox_to_anchor=(0.5, 1.0), ncols=3)
 
     block = 20
     history = gas.conserved[ensemble.history].reshape(len(ensemble.times), -1, block).mean(axis=2)
