@@ -11,6 +11,10 @@ from analysis.blocking import Estimate
 def fit_polynomial(x: ArrayLike, y: ArrayLike, error: ArrayLike, degree: int = 1) -> list[Estimate]:
     """Weighted least squares of independent points.
 
+    Where the points scatter about the fit more than their errors say, chi^2 per degree of freedom
+    above 1, the errors of the coefficients are enlarged by its square root (Birge's ratio): errors
+    of points are too small where a run is short for its slowest motion.
+
     Args:
         x: (n,).
         y: measured at x, (n,).
@@ -18,7 +22,7 @@ def fit_polynomial(x: ArrayLike, y: ArrayLike, error: ArrayLike, degree: int = 1
         degree: of the polynomial; needs degree + 1 different x.
 
     Returns:
-        coefficients of 1, x, x^2, ..., (degree + 1,), with the errors that those of y imply.
+        coefficients of 1, x, x^2, ..., (degree + 1,), with their standard errors.
 
     Raises:
         ValueError: for too few points or errors that are not positive.
@@ -34,6 +38,10 @@ def fit_polynomial(x: ArrayLike, y: ArrayLike, error: ArrayLike, degree: int = 1
     inverse = np.linalg.pinv(design)
     coefficients = inverse @ (values / errors) / scale
     deviations = np.sqrt((inverse**2).sum(axis=1)) / scale
+    freedom = len(places) - degree - 1
+    if freedom > 0:
+        residuals = (values - places[:, None] ** powers @ coefficients) / errors
+        deviations *= max(1.0, float(np.sqrt(residuals @ residuals / freedom)))
     return [Estimate(float(c), float(d)) for c, d in zip(coefficients, deviations, strict=True)]
 
 

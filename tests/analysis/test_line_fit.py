@@ -1,5 +1,6 @@
 import numpy as np
 import pytest
+from scipy.optimize import curve_fit
 
 from analysis.blocking import Estimate
 from analysis.line_fit import fit_polynomial, weighted_mean
@@ -12,27 +13,17 @@ def test_line_through_two_points_by_hand():
     assert (intercept.value, intercept.error) == pytest.approx((3.0, 0.3))
 
 
-def test_errors_are_those_of_scipy():
-    from scipy.optimize import curve_fit
-
+@pytest.mark.parametrize(("scatter", "enlarged"), [(0.1, False), (5.0, True)])
+def test_errors_are_those_of_scipy(scatter, enlarged):
     random = np.random.default_rng(1)
     x, error = np.linspace(1e-3, 0.1, 9), random.uniform(0.1, 0.5, 9)
-    y = 2 - 30 * x + 400 * x**2 + error * random.normal(size=9)
+    y = 2 - 30 * x + 400 * x**2 + scatter * error * random.normal(size=9)
     found = fit_polynomial(x, y, error, degree=2)
     best, covariance = curve_fit(
-        lambda x, a, b, c: a + b * x + c * x**2, x, y, sigma=error, absolute_sigma=True
+        lambda x, a, b, c: a + b * x + c * x**2, x, y, sigma=error, absolute_sigma=not enlarged
     )
     assert [e.value for e in found] == pytest.approx(best, rel=1e-5)
     assert [e.error for e in found] == pytest.approx(np.sqrt(np.diag(covariance)), rel=1e-5)
-
-
-def test_error_of_the_slope_is_the_scatter_of_slopes():
-    random = np.random.default_rng(2)
-    x, error = np.arange(5.0), np.array([0.1, 0.2, 0.1, 0.3, 0.2])
-    fits = [fit_polynomial(x, error * random.normal(size=5), error)[1] for _ in range(2000)]
-    scatter = np.std([fit.value for fit in fits])
-    # a standard deviation of 2000 samples is uncertain by 1/sqrt(4000); 4.4 of these (1e-5)
-    assert scatter == pytest.approx(fits[0].error, rel=4.4 / np.sqrt(4000))
 
 
 def test_mean_weighted_by_errors_by_hand():

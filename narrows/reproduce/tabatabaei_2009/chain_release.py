@@ -15,6 +15,7 @@ from numpy.typing import NDArray
 
 from analysis import RunDirectory, blocking, chain
 from analysis.blocking import Estimate
+from analysis.settling import SettlingSeries, settling_series
 from lammps_inputs import Channel
 from narrows.reproduce.drawing import PAPER, one_panel, paper_remark, shades
 from narrows.reproduce.paper_figure import Column, Folders, Outcome, PaperFigure, Quality
@@ -48,11 +49,12 @@ def release(gravity: float, quality: Quality) -> list[Channel]:
 
 @dataclass(frozen=True)
 class Released:
-    """One run: x and y head first, (T, 31) [a0], and the times, (T,) [t0]."""
+    """One run: x and y head first, (T, 31) [a0], the times, (T,) [t0], and the settling speed."""
 
     times: Array
     x: Array
     y: Array
+    settling: SettlingSeries
 
     @property
     def groups(self) -> Array:
@@ -64,6 +66,11 @@ class Released:
         """Local zigzag, (T, 29) [a0]."""
         return chain.local_zigzag(self.y)
 
+    def speed_between(self, start: float, stop: float) -> float:
+        """Mean settling speed in the co-moving frame in that time [a0/t0]."""
+        used = (self.settling.times > start) & (self.settling.times <= stop)
+        return float(self.settling.co_moving[used].mean())
+
 
 @cache
 def _read(folder: Path) -> Released:
@@ -71,7 +78,7 @@ def _read(folder: Path) -> Released:
     colloids = run.colloids
     order = chain.head_order(colloids.positions[0, :, 0], run.number("gravity"))
     x, y = colloids.positions[:, order, 0], colloids.positions[:, order, 1]
-    return Released(run.times(colloids.steps), x, y)
+    return Released(run.times(colloids.steps), x, y, settling_series(run))
 
 
 def _released(folders: Folders, gravity: float, quality: Quality) -> list[Released]:
@@ -257,6 +264,18 @@ def _figure_4_14(folders: Folders, quality: Quality) -> Outcome:
             _over_runs(moved),
             "the zigzag moves to the middle and then to the tail",
             "positive",
+        ),
+        *(
+            measured(
+                "4.14",
+                f"v_s of the chain, t from {start:.0f} to {stop:.0f} [a0/t0]",
+                _over_runs([run.speed_between(start, stop) for run in runs]),
+                note,
+            )
+            for start, stop, note in (
+                (0.0, 200.0, None),
+                (*late, "the zigzag takes colloids from the mid-line, where they fall fastest"),
+            )
         ),
     ]
     table: dict[str, Column] = {"colloid_from_the_head": list(range(2, COLLOIDS))}
