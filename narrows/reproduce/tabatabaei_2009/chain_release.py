@@ -30,8 +30,10 @@ SNAPSHOT = 500.0  # time of Fig. 4.14, and end of the growth rates [t0]
 
 def release(gravity: float, quality: Quality) -> list[Channel]:
     """The chain of Fig. 4.11, several seeds."""
-    full, quick = (8, 3) if gravity else (6, 2)
-    seeds, duration = (full, 1000.0) if quality == "full" else (quick, SNAPSHOT)
+    if quality == "quick":
+        seeds, duration = 2, 1000.0 if gravity else SNAPSHOT
+    else:
+        seeds, duration = 6, 1500.0 if gravity else 1000.0
     return [
         Channel.make(
             length=LENGTH,
@@ -113,7 +115,7 @@ def _draw_spacings(runs: Sequence[Released]) -> Figure:
         axes.plot(times, mean[:, group], color=colours[group], label=f"$D_{group + 1}${end}")
     axes.axhline(SPACING, color=PAPER, linestyle="--", linewidth=1.0, label="$d_0$ = 5")
     axes.set_xlim(0, times[-1])
-    axes.legend(loc="upper left", ncols=2)
+    axes.legend(loc="center left", bbox_to_anchor=(1.0, 0.5))
     return figure
 
 
@@ -139,8 +141,8 @@ def _figure_4_12(folders: Folders, quality: Quality) -> Outcome:
     runs = _released(folders, 0.1, quality)
     rates = _growth_rates(runs)
     figure = _draw_spacings(runs)
-    remark = "thesis: $D_1$ grows fastest, at the head\n(labelled from the leftmost colloid)"
-    paper_remark(figure.axes[0], 0.3, 0.9, remark, va="top")
+    remark = "thesis: $D_1$, at the head, grows fastest; labels from the leftmost colloid"
+    paper_remark(figure.axes[0], 0.0, 1.02, remark, va="bottom")
     slope = fit(np.arange(1, len(rates) + 1), rates)[1]
     contradiction = (
         "for gravity along +x the chain closes up at the head and spreads at the tail, as a "
@@ -182,8 +184,8 @@ def _figure_4_13(folders: Folders, quality: Quality) -> Outcome:
     runs = _released(folders, 0.0, quality)
     rates = _growth_rates(runs)
     figure = _draw_spacings(runs)
-    remark = "thesis: always fluctuating,\nno systematic behaviour"
-    paper_remark(figure.axes[0], 0.98, 0.95, remark, va="top", ha="right")
+    remark = "thesis: always fluctuating, no systematic behaviour"
+    paper_remark(figure.axes[0], 0.0, 1.02, remark, va="bottom")
     results = [
         *_rate_results("4.13", rates),
         claimed(
@@ -233,10 +235,10 @@ def _strip(run: Released, times: Sequence[float]) -> Figure:
 def _figure_4_14(folders: Folders, quality: Quality) -> Outcome:
     runs = _released(folders, 0.1, quality)
     last = runs[0].times[-1]
-    shown = [0.0, 125.0, 250.0, 375.0, 500.0] + ([750.0, 1000.0] if last > 750 else [])
+    shown = [time for time in (0.0, 125.0, 250.0, 500.0, 750.0, 1000.0, 1500.0) if time <= last]
     figure = _strip(runs[0], shown)
     ends: list[float] = []
-    early, late = (100.0, 300.0), (last - 200.0, last)
+    early, late = (400.0, 500.0), (last - 200.0, last)
     moved: list[float] = []
     for run in runs:
         near = (run.times >= 400) & (run.times <= 500)

@@ -102,6 +102,7 @@ def _table(series: Iterable[tuple[str, Sequence[Speed]]]) -> dict[str, Column]:
         "v_s_error": [found.co_moving.error for _, found in rows],
         "v_rest": [found.rest.value for _, found in rows],
         "v_rest_error": [found.rest.error for _, found in rows],
+        "rms_off_mid_line_a0": [found.off_mid_line for _, found in rows],
     }
 
 

@@ -52,7 +52,14 @@ class Point:
         return math.pi * self.scenes[0].colloid_radius ** 2 * self.density
 
 
-def point(length: int, colloids: int, seeds: int, duration: float = 1000.0, **fields: Any) -> Point:
+def point(
+    length: int,
+    colloids: int,
+    seeds: int,
+    duration: float = 1000.0,
+    first_seed: int = 1,
+    **fields: Any,
+) -> Point:
     """The thesis' parameters (Table 3.1 and 4.4), in a channel of this length."""
     return Point(
         tuple(
@@ -64,31 +71,42 @@ def point(length: int, colloids: int, seeds: int, duration: float = 1000.0, **fi
                 seed=seed,
                 **fields,
             )
-            for seed in range(1, seeds + 1)
+            for seed in range(first_seed, first_seed + seeds)
         )
     )
 
 
 @cache
-def _series(folder: Path) -> SettlingSeries:
-    return settling_series(RunDirectory(folder))
+def _read(folder: Path) -> tuple[SettlingSeries, float]:
+    """Speeds, and the mean square distance from the mid-line [a0^2]."""
+    run = RunDirectory(folder)
+    series = settling_series(run)
+    y = run.colloids.positions[1:, :, 1][: len(series.used)]
+    return series, float(((y[series.used] - run.number("width") / 2) ** 2).mean())
 
 
 @dataclass(frozen=True)
 class Speed:
-    """Settling speed of a point in the co-moving frame (4.9) and in the frame at rest."""
+    """What the runs of a point tell.
+
+    Attributes:
+        co_moving, rest: settling speed in the co-moving frame (4.9), and in that at rest [a0/t0].
+        off_mid_line: root mean square of the colloids' distance from the mid-line [a0].
+    """
 
     point: Point
     co_moving: Estimate
     rest: Estimate
+    off_mid_line: float
 
 
 def speed(folders: Folders, where: Point) -> Speed:
     """Mean over time and seeds, with the error of the blocks of all seeds one after the other."""
-    series = [_series(folders[scene]) for scene in where.scenes]
-    moving = np.concatenate([run.co_moving[run.used] for run in series])
-    rest = np.concatenate([run.rest[run.used] for run in series])
-    return Speed(where, blocking.mean(moving), blocking.mean(rest))
+    runs = [_read(folders[scene]) for scene in where.scenes]
+    moving = np.concatenate([series.co_moving[series.used] for series, _ in runs])
+    rest = np.concatenate([series.rest[series.used] for series, _ in runs])
+    off = math.sqrt(sum(square for _, square in runs) / len(runs))
+    return Speed(where, blocking.mean(moving), blocking.mean(rest), off)
 
 
 def scenes_of(all_points: Iterable[Point]) -> list[Scene]:
