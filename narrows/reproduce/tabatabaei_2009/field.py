@@ -4,6 +4,8 @@ import numpy as np
 
 from analysis import RunDirectory, blocking, flow
 from analysis.blocking import Estimate
+from analysis.depletion import wall_depletion
+from lammps_inputs import Channel
 from lammps_inputs.viscosity import viscosity
 from narrows.reproduce.drawing import SPEED, one_panel, paper_line, paper_remark, points
 from narrows.reproduce.paper_figure import Column, Folders, Outcome, PaperFigure, Quality
@@ -92,6 +94,14 @@ def _figure_4_9(folders: Folders, quality: Quality) -> Outcome:
     return Outcome(figure, table, results)
 
 
+def _well_at_the_wall(scene: Channel) -> float:
+    """Depth of the potential of mean force of a colloid near one wall [kBT]."""
+    fluid, wall = scene.colloid_fluid, scene.colloid_wall
+    distances = np.linspace(0.5, scene.width / 2, 400)
+    depletion = [wall_depletion(fluid.energy, fluid.cutoff, y, scene.density) for y in distances]
+    return float(-(np.array(depletion) + wall.energy(distances)).min())
+
+
 def _figure_4_10(folders: Folders, quality: Quality) -> Outcome:
     gravities = _gravities(quality)
     speeds = {
@@ -149,6 +159,17 @@ def _figure_4_10(folders: Folders, quality: Quality) -> Outcome:
             "the thesis: a small deviation from the line for sigma_w = 1.2",
         )
     )
+    results += [
+        measured(
+            "4.10",
+            f"depth of the well at the wall that depletion makes, sigma_w = {sigma:.1f} [kBT]",
+            Estimate(_well_at_the_wall(where.scenes[0]), 0.0),
+            "exact: the MPC fluid is an ideal gas, and presses a colloid to a wall that lets the "
+            "colloid come closer than the colloid lets the fluid",
+        )
+        for sigma in (WIDE, NARROW)
+        for where in field_points(sigma, quality)[:1]
+    ]
     table: dict[str, Column] = {
         "gravity": gravities,
         **{

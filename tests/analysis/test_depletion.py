@@ -1,0 +1,30 @@
+import numpy as np
+import pytest
+
+from analysis.depletion import wall_depletion
+from lammps_inputs import Channel
+
+
+def hard(r):
+    return np.where(r < 2.0, 1e3, 0.0)
+
+
+@pytest.mark.parametrize(("distance", "cap"), [(0.0, 2 * np.pi), (1.0, 4 * np.pi / 3 - np.sqrt(3))])
+def test_hard_disc_by_hand(distance, cap):
+    # the cap of a disc of radius 2 beyond the wall; half of it, and the segment of 120 degrees
+    assert wall_depletion(hard, 2.0, distance, density=10.0) == pytest.approx(-10 * cap, rel=1e-4)
+
+
+def test_none_out_of_reach():
+    assert wall_depletion(hard, 2.0, 2.0, density=10.0) == 0.0
+
+
+def test_colloid_of_the_thesis_against_a_sum_over_a_grid():
+    colloid = Channel.make().colloid_fluid
+    step = 0.01
+    x, y = np.meshgrid(*2 * [np.arange(-3 + step / 2, 3, step)], indexing="ij")
+    r = np.hypot(x, y)
+    beyond = (y < -1.3) & (r < colloid.cutoff)
+    kept_off = -np.expm1(-colloid.energy(r[beyond])).sum() * step**2
+    found = wall_depletion(colloid.energy, colloid.cutoff, 1.3, density=10.0)
+    assert found == pytest.approx(-10 * kept_off, rel=2e-3)  # the grid's edge
