@@ -4,7 +4,8 @@
 |---|---|
 | `lattice_shocks` | 2.1 and 2.2, with a running shock |
 | `flow` | 3.6 and 3.7, Poiseuille flow |
-| `settling` | 4.3 to 4.8 and 5.1, settling speed against volume fraction |
+| `few_colloids` | 4.3 to 4.5 and 4.8, settling speed against volume fraction and length |
+| `many_colloids` | 4.6, 4.7 and 5.1, against volume fraction, number and density |
 | `field` | 4.9 and 4.10, against gravity |
 | `chain_release` | 4.12 to 4.14, the released chain |
 
@@ -14,21 +15,24 @@ Units: a0 = kBT = m_f = 1.
 from narrows.reproduce.paper_figure import Paper
 from narrows.reproduce.tabatabaei_2009 import (
     chain_release,
+    few_colloids,
     field,
     flow,
     lattice_shocks,
-    settling,
+    many_colloids,
+)
+
+_FIGURES = (
+    *lattice_shocks.FIGURES,
+    *flow.FIGURES,
+    *few_colloids.FIGURES,
+    *many_colloids.FIGURES,
+    *field.FIGURES,
+    *chain_release.FIGURES,
 )
 
 PAPER = Paper(
     "tabatabaei-2009",
     "Tabatabaei (2009): shocks of lattice gases, and colloids in a narrow channel",
-    (
-        *lattice_shocks.FIGURES,
-        *flow.FIGURES,
-        *settling.FIGURES,
-        *field.FIGURES,
-        *chain_release.FIGURES,
-        settling.FIGURE_5_1,
-    ),
+    tuple(sorted(_FIGURES, key=lambda figure: [int(part) for part in figure.number.split(".")])),
 )
