@@ -1,8 +1,8 @@
 """State points of the settling colloids: runs that differ in their seed, and their mean speed.
 
 A run is the time from 100 to 1100 t0 after the release of an evenly spaced chain on the mid-line.
-The window matters: the thesis equilibrates for 1e5 steps, which is 100 t0 with its tau_MD of 0.001,
-and the colloids keep near the mid-line for about a thousand more.
+The window matters, because colloids leave the mid-line slowly and are slower off it: the thesis
+equilibrates for 1e5 steps, which is 100 t0 with its tau_MD of 0.001.
 """
 
 import math
