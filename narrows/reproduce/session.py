@@ -5,7 +5,6 @@ A run that fails costs the figures that need it, and no others.
 
 import csv
 import hashlib
-import os
 import time as clock
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, field
@@ -141,8 +140,3 @@ def _write_figure(stem: Path, outcome: Outcome) -> Path:
         writer.writerow(outcome.table)
         writer.writerows(zip(*outcome.table.values(), strict=True))
     return Path(f"{stem}.png")
-
-
-def cores() -> int:
-    """Cores this process may use."""
-    return len(os.sched_getaffinity(0))
