@@ -28,3 +28,13 @@ def test_colloid_of_the_thesis_against_a_sum_over_a_grid():
     kept_off = -np.expm1(-colloid.energy(r[beyond])).sum() * step**2
     found = wall_depletion(colloid.energy, colloid.cutoff, 1.3, density=10.0)
     assert found == pytest.approx(-10 * kept_off, rel=2e-3)  # the grid's edge
+
+
+@pytest.mark.parametrize(("wall_sigma", "least", "most"), [(2.0, 0.0, 1.0), (1.2, 15.0, 30.0)])
+def test_walls_of_the_thesis(wall_sigma, least, most):
+    """sigma_w = 1.2 lets a colloid nearer than the colloid lets the fluid: it sticks."""
+    scene = Channel.make(wall_sigma=wall_sigma)
+    colloid, places = scene.colloid_fluid, np.linspace(0.8, 3.0, 100)
+    drawn = [wall_depletion(colloid.energy, colloid.cutoff, y, scene.density) for y in places]
+    depth = -(np.array(drawn) + scene.colloid_wall.energy(places)).min()
+    assert least < depth < most
