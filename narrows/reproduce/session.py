@@ -99,7 +99,7 @@ def carry_out(plan: Plan, jobs: int, report: Callable[[Advance], None] | None = 
             with matplotlib.rc_context(STYLE):
                 outcome = figure.make(folders, plan.quality)
                 picture = _write_figure(plan.out / f"figure-{figure.number}", outcome)
-        except RunDirectoryError as error:
+        except ValueError as error:  # RunDirectoryError, and a fit that its points do not determine
             left_out.append(f"figure {figure.number} left out: {error}")
         else:
             made.append(Made(figure, outcome, scenes, picture))

@@ -12,6 +12,7 @@ import time
 import numpy as np
 
 from narrows.reproduce import session
+from narrows.reproduce.paper_figure import PaperFigure
 from narrows.reproduce.session import Plan, carry_out
 from srd_driver.sweep import Failure
 from tests.conftest import ROOT
@@ -74,6 +75,17 @@ def test_a_failed_run_costs_its_own_figures_only(tmp_path, monkeypatch):
     assert done.left_out == [f"figure 2 left out: {lost.folder}: stopped"]
     assert "figure 2 left out" in (tmp_path / "index.html").read_text()
     assert not (tmp_path / "figure-2.png").exists()
+
+
+def test_a_figure_that_cannot_be_made_costs_itself_only(tmp_path):
+    def make(folders, quality):
+        raise ValueError("every point needs a positive error")
+
+    plan = plan_of(tmp_path)
+    plan.figures = [PaperFigure("0", "Broken.", make), *plan.figures]
+    done = carry_out(plan, jobs=2)
+    assert [result.figure for result in done.results] == ["1", "2"]
+    assert done.left_out == ["figure 0 left out: every point needs a positive error"]
 
 
 def test_goes_on_after_kill_9(tmp_path):
