@@ -67,6 +67,7 @@ th { text-align: left; font-weight: 600; border-bottom: 2px solid #c9d0d8; paddi
 td { border-bottom: 1px solid #e6e9ed; padding: 5px 8px; vertical-align: top; }
 td.number { white-space: nowrap; font-variant-numeric: tabular-nums; }
 .note { color: #5b6570; font-size: 12.5px; }
+td .none { white-space: nowrap; }
 .claim { color: #a50d26; }
 .verdict { font-weight: 600; white-space: nowrap; }
 .agrees { color: #17713a; } .disagrees { color: #b3261e; } .open { color: #8a6100; }
@@ -148,7 +149,7 @@ def _row(result: Result) -> str:
     elif result.claim:
         paper = f'<span class="claim">{escape(result.claim)}</span>'
     else:
-        paper = '<span class="note">no number</span>'
+        paper = '<span class="note none">no number</span>'
     return (
         f"<tr><td>{escape(result.quantity)}{note}</td>"
         f'<td class="number">{_number(entry["value"], entry["error"])}</td><td>{paper}</td>'

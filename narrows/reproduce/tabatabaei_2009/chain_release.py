@@ -11,7 +11,7 @@ from matplotlib.collections import PatchCollection
 from matplotlib.colors import Normalize
 from matplotlib.figure import Figure
 from matplotlib.patches import Circle
-from numpy.typing import NDArray
+from numpy.typing import ArrayLike, NDArray
 
 from analysis import RunDirectory, blocking, chain
 from analysis.blocking import Estimate
@@ -20,7 +20,6 @@ from lammps_inputs import Channel
 from narrows.reproduce.drawing import PAPER, one_panel, paper_remark, shades
 from narrows.reproduce.paper_figure import Column, Folders, Outcome, PaperFigure, Quality
 from narrows.reproduce.results import Result, claimed, measured
-from narrows.reproduce.tabatabaei_2009.state_points import difference, fit
 
 Array = NDArray[np.float64]
 
@@ -87,18 +86,18 @@ def _released(folders: Folders, gravity: float, quality: Quality) -> list[Releas
     return [_read(folders[scene]) for scene in release(gravity, quality)]
 
 
-def _over_runs(values: Sequence[float]) -> Estimate:
+def _over_runs(values: ArrayLike) -> Estimate:
     """Mean over independent runs with its standard error."""
     return blocking.mean(values)
 
 
-def _growth_rates(runs: Sequence[Released]) -> list[Estimate]:
-    """Slope of each D_i(t) up to the time of Fig. 4.14, head first [a0/t0]."""
+def _growth_rates(runs: Sequence[Released]) -> Array:
+    """Slope of each D_i(t) up to the time of Fig. 4.14, head first, (runs, 6) [a0/t0]."""
     slopes = []
     for run in runs:
         until = run.times <= SNAPSHOT
         slopes.append(np.polyfit(run.times[until], run.groups[until], 1)[0])
-    return [_over_runs(rates) for rates in np.array(slopes).T]
+    return np.array(slopes)
 
 
 def _draw_spacings(runs: Sequence[Released]) -> Figure:
@@ -130,10 +129,10 @@ def _spacing_table(runs: Sequence[Released]) -> dict[str, list[float]]:
     return table
 
 
-def _rate_results(figure: str, rates: Sequence[Estimate]) -> list[Result]:
+def _rate_results(figure: str, rates: Array) -> list[Result]:
     return [
-        measured(figure, f"growth rate of D_{number + 1}, t <= 500 [a0/t0]", rate)
-        for number, rate in enumerate(rates)
+        measured(figure, f"growth rate of D_{number}, t <= 500 [a0/t0]", _over_runs(rate))
+        for number, rate in enumerate(rates.T, start=1)
     ]
 
 
@@ -143,14 +142,14 @@ def _figure_4_12(folders: Folders, quality: Quality) -> Outcome:
     figure = _draw_spacings(runs)
     remark = "thesis: $D_1$, at the head, grows fastest; labels from the leftmost colloid"
     paper_remark(figure.axes[0], 0.0, 1.02, remark, va="bottom")
-    slope = fit(np.arange(1, len(rates) + 1), rates)[1]
+    slope = _over_runs(np.polyfit(np.arange(rates.shape[1]), rates.T, 1)[0])
     contradiction = (
         "for gravity along +x the chain closes up at the head and spreads at the tail, as a "
         "current rho (c' + c rho) with c > 0 does. The thesis' own clustering at the head (Fig. "
         "4.14) means small spacings there; its D_1, counted from the leftmost colloid, is at the "
         "tail of a chain that falls to the right"
     )
-    fastest_at_head = difference(rates[0], rates[-1])
+    fastest_at_head = _over_runs(rates[:, 0] - rates[:, -1])
     results = [
         *_rate_results("4.12", rates),
         claimed(
@@ -163,7 +162,7 @@ def _figure_4_12(folders: Folders, quality: Quality) -> Outcome:
         ),
         claimed(
             "4.12",
-            "change of the growth rate from one group to the next, leftmost to rightmost, times -1",
+            "growth rate lost from one group to the next, counted from the leftmost [a0/t0]",
             slope,
             "the rate at which D_i increases varies monotonically with i",
             "positive",
@@ -191,7 +190,7 @@ def _figure_4_13(folders: Folders, quality: Quality) -> Outcome:
         claimed(
             "4.13",
             "growth rate of the spacing at one end less at the other [a0/t0]",
-            difference(rates[0], rates[-1]),
+            _over_runs(rates[:, 0] - rates[:, -1]),
             "without gravity no systematic behaviour",
             "zero",
         ),

@@ -119,9 +119,8 @@ def difference(one: Estimate, other: Estimate) -> Estimate:
     assert one.value is not None
     assert other.value is not None
     errors = [one.error, other.error]
-    if None in errors:
-        return Estimate(one.value - other.value, None, one.reason or other.reason)
-    return Estimate(one.value - other.value, math.hypot(*(error or 0.0 for error in errors)))
+    joint = None if None in errors else math.hypot(*(error or 0.0 for error in errors))
+    return Estimate(one.value - other.value, joint, one.reason or other.reason)
 
 
 def fit(x: ArrayLike, y: Sequence[Estimate], degree: int = 1) -> list[Estimate]:
