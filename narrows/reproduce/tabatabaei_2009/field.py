@@ -22,6 +22,10 @@ from narrows.reproduce.tabatabaei_2009.state_points import (
 SLOPE = PaperNumber.printed("0.34")
 SPEED_AT_0_1 = PaperNumber.printed("0.034")  # the line at g = 0.1
 WIDE, NARROW = 2.0, 1.2  # sigma_w
+WANDERING = (
+    "below 0 as far as the colloids wander off the mid-line, where they are slower, the more the "
+    "weaker gravity is: rms_off_mid_line_a0 in the data of Fig. 4.10"
+)
 GRAVITY = "gravity $g$  [$a_0/t_0^2$]"
 
 
@@ -84,6 +88,7 @@ def _figure_4_9(folders: Folders, quality: Quality) -> Outcome:
             line[0],
             "proportional to g",
             "zero",
+            WANDERING,
         ),
     ]
     table: dict[str, Column] = {
@@ -127,8 +132,7 @@ def _figure_4_10(folders: Folders, quality: Quality) -> Outcome:
             "4.10",
             "v_s at g = 0 of the line, sigma_w = 2.0 [a0/t0]",
             intercept,
-            "below 0 where weak gravity lets the colloids go to the walls, which they do in some "
-            "hundred t0: the column rms_off_mid_line_a0 of the data",
+            WANDERING,
         ),
         compared(
             "4.10",
