@@ -95,7 +95,7 @@ def _make(slit: Slit, folders: Folders, quality: Quality) -> Outcome:
             _estimate(summary["viscosity"]),
             slit.viscosity,
             f"includes the slip at the walls, {slip['value']:.1f} % of the maximum; this is why it "
-            "lies below theory",
+            "lies below theory; the thesis gives neither an error nor how long it averaged",
         ),
         compared(
             number,
