@@ -54,9 +54,7 @@ class TwoFluid:
         n, n_f = self.fluid_density * fluid, self.fluid_density
         return np.asarray((n - 1 + np.exp(-n)) / (n_f - 1 + np.exp(-n_f)))
 
-    def solve(
-        self, density: ArrayLike, spacing: float, times: ArrayLike
-    ) -> tuple[Array, Array]:
+    def solve(self, density: ArrayLike, spacing: float, times: ArrayLike) -> tuple[Array, Array]:
         """Density of the colloids and of the fluid, periodic along x, from pi = 1 at t = 0.
 
         Finite volumes: Godunov's flux for the colloids, central ones for the pressure, explicit in

@@ -51,8 +51,9 @@ def test_rarefaction_fan_behind_the_block_and_convergence():
 def test_concave_current_turns_the_ends_round():
     law = TwoFluid(lambda r: 0.2 * (1 - r / 0.04), np.zeros_like, 0.0, 12.0, 0.0, 10.0)
     rho, _ = law.solve(block(0.02), CELL, [800.0])
-    rising, falling = (np.count_nonzero((part > 1e-3) & (part < 0.019)) for part in
-                       (rho[0][:300], rho[0][300:]))
+    rising, falling = (
+        np.count_nonzero((part > 1e-3) & (part < 0.019)) for part in (rho[0][:300], rho[0][300:])
+    )
     assert rising < 12 < 60 < falling  # J' = 0.2 (1 - 50 rho): shock at the tail, fan at the head
 
 
