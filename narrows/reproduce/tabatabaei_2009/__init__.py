@@ -8,12 +8,15 @@
 | `many_colloids` | 4.6, 4.7 and 5.1, against volume fraction, number and density |
 | `field` | 4.9 and 4.10, against gravity |
 | `chain_release` | 4.12 to 4.14, the released chain |
+| `beyond_flux`, `beyond_front` with `chain_ends` | what the thesis could not do: docs/beyond.md |
 
 Units: a0 = kBT = m_f = 1.
 """
 
 from narrows.reproduce.paper_figure import Paper
 from narrows.reproduce.tabatabaei_2009 import (
+    beyond_flux,
+    beyond_front,
     chain_release,
     few_colloids,
     field,
@@ -34,5 +37,9 @@ _FIGURES = (
 PAPER = Paper(
     "tabatabaei-2009",
     "Tabatabaei (2009): shocks of lattice gases, and colloids in a narrow channel",
-    tuple(sorted(_FIGURES, key=lambda figure: [int(part) for part in figure.number.split(".")])),
+    (
+        *sorted(_FIGURES, key=lambda figure: [int(part) for part in figure.number.split(".")]),
+        *beyond_flux.FIGURES,
+        *beyond_front.FIGURES,
+    ),
 )

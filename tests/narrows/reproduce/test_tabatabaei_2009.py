@@ -15,7 +15,7 @@ from narrows.reproduce.tabatabaei_2009.state_points import difference, fit, poin
 
 FIGURES = [
     *("2.1", "2.2", "3.6", "3.7", "4.3", "4.4", "4.5", "4.6", "4.7", "4.8", "4.9", "4.10"),
-    *("4.12", "4.13", "4.14", "5.1"),
+    *("4.12", "4.13", "4.14", "5.1", "beyond-flux", "beyond-front"),
 ]
 
 
