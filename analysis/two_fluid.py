@@ -1,9 +1,9 @@
 """Colloids and their fluid in a slit, coarse-grained along it: two coupled conservation laws.
 
 An MPC fluid is an ideal gas, and the walls take up its momentum: disturbances of its pressure do
-not sound along a slit, they diffuse, with D = kBT n_f K (1.9 a0^2/t0 for the thesis' parameters;
-100 a0 take 5000 t0). So the fluid that falling colloids drag along piles up ahead of them, and its
-density is a slow field beside theirs:
+not travel along a slit as sound, they diffuse, with D = kBT n_f K (2 a0^2/t0 for the thesis'
+parameters; 100 a0 take 2500 t0). So the fluid that falling colloids drag along piles up ahead of
+them, and its density is a slow field beside theirs:
 
     d_t rho + d_x (rho v) = 0,   rho v from   v = (V(rho) - X(rho) d_x p) / h
     d_t m + d_x (pi u + A (1 - pi) rho v) = 0,   u = (rho F X(rho) - K d_x p) / h
