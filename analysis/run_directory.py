@@ -87,7 +87,8 @@ class RunDirectory:
         RunDirectoryError: when it is no run directory or its manifest lacks what analysis needs.
     """
 
-    def __init__(self, path: Path) -> None:
+    def __init__(self, path: str | Path) -> None:
+        path = Path(path)
         if not path.is_dir():
             raise RunDirectoryError(f"{path}: no such directory")
         if not (path / "manifest.json").is_file():

@@ -33,7 +33,7 @@ class Results:
     figures: dict[str, Figure] = field(default_factory=dict)
 
 
-def analyze(directory: Path) -> dict[str, Any]:
+def analyze(directory: str | Path) -> dict[str, Any]:
     """Analyses a run and writes summary.json and the figures into its directory.
 
     Args:
@@ -57,8 +57,8 @@ def analyze(directory: Path) -> dict[str, Any]:
         _colloids(run, results)
     results.summary["figures"] = sorted(results.figures)
     for name, figure in results.figures.items():
-        figure.savefig(directory / name, dpi=150)
-    _write_json(directory / "summary.json", results.summary)
+        figure.savefig(run.path / name, dpi=150)
+    _write_json(run.path / "summary.json", results.summary)
     return results.summary
 
 

@@ -77,7 +77,7 @@ def combine(repeats: Sequence[Estimate]) -> Estimate:
 
 
 def tabulate(
-    directory: Path,
+    directory: str | Path,
     jobs: int,
     renew: bool = True,
     report: Callable[[int, int], None] | None = None,
@@ -94,6 +94,7 @@ def tabulate(
         RunDirectoryError: when it is no sweep.
         OSError: when the table cannot be written.
     """
+    directory = Path(directory)
     try:
         sweep = json.loads((directory / "sweep.json").read_text(encoding="utf-8"))
         runs, over = sweep["runs"], sweep["over"]

@@ -30,7 +30,7 @@ FixMPC<D>::FixMPC(LAMMPS *lmp, int narg, char **arg) :
 
   restart_global = 1;
   nevery = given_.every;
-  time_integrate = 1;
+  time_integrate = !given_.colloid_bit;    // colloids have an integrator of their own
   scalar_flag = vector_flag = array_flag = 1;
   global_freq = given_.every;
   size_vector = 5;

@@ -46,7 +46,7 @@ def test_unwrapping_keeps_digits_far_down_the_channel(tmp_path):
 
 
 def test_universe_for_users(channel):
-    universe = RunDirectory(channel).universe()
+    universe = RunDirectory(str(channel)).universe()
     assert isinstance(universe, MDAnalysis.Universe)
     assert universe.atoms.masses == pytest.approx([100.0] * 3)
     assert universe.trajectory[2].time == pytest.approx(2.0)  # step 20 of 0.1

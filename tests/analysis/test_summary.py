@@ -231,7 +231,7 @@ def test_run_in_progress_uses_what_both_files_hold(tmp_path):
 
 def test_analysis_can_be_repeated(tmp_path):
     channel(tmp_path, frames=101)
-    assert analyze(tmp_path) == analyze(tmp_path)
+    assert analyze(str(tmp_path)) == analyze(tmp_path)
 
 
 def test_nothing_after_the_equilibration(tmp_path):

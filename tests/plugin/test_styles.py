@@ -8,6 +8,7 @@ import numpy as np
 import pytest
 
 from lammps_inputs import InitialState, make_scene
+from lammps_inputs.deck import write_deck
 from lammps_inputs.mpc_deck import fluid_file
 from lammps_inputs.potentials import IntegratedWall
 from srd_driver.parallel import communicator
@@ -226,6 +227,17 @@ def test_between_two_collisions_nothing_is_written(lammps: Commands, command: st
 
 def test_import_lammps_finds_the_styles(lammps: Commands) -> None:
     assert {"mpc", "wall/lj115"} <= set(lammps("").available_styles("fix"))
+
+
+@pytest.mark.parametrize(("name", "fields"), [("channel", {"length": 21}), ("poiseuille", {})])
+def test_lammps_has_no_warnings_about_a_deck(
+    name: str, fields: dict[str, Any], tmp_path: Path, command: Run
+) -> None:
+    scene = make_scene(name, **fields, duration=2, equilibration=0)
+    write_deck(scene, tmp_path, "mpc")
+    done = command("lmp", "-in", "in.lammps", cwd=tmp_path)
+    assert "Total wall time" in done.stdout
+    assert "WARNING" not in done.stdout + done.stderr
 
 
 def test_ghosts_too_short_for_the_coupling_are_refused(tmp_path: Path, command: Run) -> None:

@@ -1,0 +1,49 @@
+"""The pages: links lead somewhere, and what docs/theory.md names is in the code."""
+
+import re
+from pathlib import Path
+
+import pytest
+
+from tests.conftest import ROOT
+
+PAGES = [ROOT / "README.md", *sorted((ROOT / "docs").glob("*.md"))]
+LINK = re.compile(r"\]\(([^)\s]+)\)")
+HEADING = re.compile(r"^#+ (.*)$", re.MULTILINE)
+
+
+def anchors(page: Path) -> set[str]:
+    """The anchors that a reader of the page on a forge can be sent to."""
+    headings = HEADING.findall(page.read_text(encoding="utf-8"))
+    return {re.sub(r"[^\w\- ]", "", heading.lower()).replace(" ", "-") for heading in headings}
+
+
+@pytest.mark.parametrize("page", PAGES, ids=lambda page: page.name)
+def test_links_resolve(page: Path) -> None:
+    for link in LINK.findall(page.read_text(encoding="utf-8")):
+        if re.match(r"[a-z]+:", link):
+            continue
+        path, _, anchor = link.partition("#")
+        target = page.parent / path if path else page
+        assert target.exists(), link
+        assert not anchor or anchor in anchors(target), link
+
+
+def test_the_readme_leads_to_every_page() -> None:
+    linked = set(LINK.findall(PAGES[0].read_text(encoding="utf-8")))
+    assert {f"docs/{page.name}" for page in PAGES[1:]} <= linked
+
+
+def test_what_the_theory_page_names_is_there() -> None:
+    """Of `path::name` the file exists and defines the name; of `path` alone the file exists."""
+    text = (ROOT / "docs" / "theory.md").read_text(encoding="utf-8")
+    named = re.findall(r"`([\w/]+\.(?:py|h|cpp))(?:::([\w:]+))?`", text)
+    assert len(named) > 50
+    for path, names in named:
+        code = (ROOT / path).read_text(encoding="utf-8")
+        for name in filter(None, names.split("::")):
+            if path.endswith(".py"):
+                defined = rf"^ *(?:class|def) {name}\b|^ *{name}\b.*="
+            else:
+                defined = rf"^(?!\s*return )[\w<>:&* ]*[\w>&*] {name}\b\s*(?:[({{:]|$)"
+            assert re.search(defined, code, re.MULTILINE), f"{path}::{name}"
