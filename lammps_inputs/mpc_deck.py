@@ -1,5 +1,6 @@
 """The deck of `fix mpc`: the fluid lives in the fix, LAMMPS's atoms are the colloids."""
 
+import math
 from collections.abc import Iterable, Iterator
 from pathlib import Path
 
@@ -7,6 +8,8 @@ import numpy as np
 
 from lammps_inputs import Bulk, Channel, InitialState, Scene, initial_state
 from lammps_inputs.deck_lines import Start, box, head, observables, read, run, trajectory
+
+SKIN = 0.5  # of the neighbour list [a0]
 
 
 def write(scene: Scene, directory: Path) -> None:
@@ -39,8 +42,10 @@ def lines(scene: Scene, start: Start) -> Iterator[str]:
         yield f"pair_style mie/cut {scene.colloid_colloid.cutoff!r}"
         yield scene.colloid_colloid.pair_coeff("1 1")
         yield "pair_modify shift yes"
-        yield "neighbor 0.5 bin"
+        yield f"neighbor {SKIN!r} bin"
         yield "neigh_modify delay 0 every 1 check yes"
+        if _ghost_cutoff(scene) > scene.colloid_colloid.cutoff + SKIN:
+            yield f"comm_modify cutoff {_ghost_cutoff(scene):.6g} # the fluid sees colloids so far"
     else:
         yield "pair_style none"
         yield "comm_modify cutoff 1.0"
@@ -66,6 +71,17 @@ def lines(scene: Scene, start: Start) -> Iterator[str]:
     if isinstance(scene, Channel):
         yield from trajectory(start)
     yield from run()
+
+
+def _ghost_cutoff(scene: Channel) -> float:
+    """How far from its cells the fluid has to see colloids: what fix mpc asks for [a0].
+
+    1.5 cells, the range of the force, and the flights of one collision interval: 7 thermal speeds
+    of the fluid, and 3 times the fastest colloid's, which drifts no faster than 1 and may have 7
+    thermal speeds of its own.
+    """
+    colloid_speed = 1 + 7 / math.sqrt(scene.colloid_mass)
+    return 1.5 + scene.colloid_fluid.cutoff + scene.collision_time * (7 + 3 * colloid_speed)
 
 
 def _solvent(scene: Scene, start: Start) -> Iterator[str]:
