@@ -1,0 +1,66 @@
+"""What is warned of: the map of docs/stability.md, and silence for the papers' parameters."""
+
+from typing import Any
+
+import pytest
+
+from lammps_inputs import SceneError, make_scene
+from lammps_inputs.deck import Engine, script
+from lammps_inputs.limits import warnings
+
+
+@pytest.mark.parametrize("name", ["channel", "poiseuille", "bulk"])
+@pytest.mark.parametrize("engine", ["srd", "mpc", "reference"])
+def test_the_papers_parameters_raise_no_warning(name: str, engine: Engine) -> None:
+    assert not list(warnings(make_scene(name), engine))
+
+
+WARNED: list[tuple[str, dict[str, Any], str]] = [
+    ("poiseuille", {"density": 0.5}, "density = 0.5: fluid particles are often alone"),
+    ("channel", {"gravity": -1}, "gravity = -1.0: colloids would fall at about 0.33 a0/t0"),
+    ("channel", {"collision_time": 0.001}, "collision_time = 0.001: particles collide with the"),
+    ("poiseuille", {"width": 10, "collision_time": 1}, "collision_time = 1.0: the mean free path"),
+    ("bulk", {"collision_time": 10}, "collision_time = 10.0: the mean free path of 10 a0"),
+    ("bulk", {"angle": 1}, "angle = 1.0: the mean free path of 182 a0 is not short"),
+    ("bulk", {"angle": 180}, "angle = 180.0: the mean free path"),
+    ("bulk", {"dimension": 3, "rotation": "random_axis", "angle": 3}, "angle = 3.0: the mean free"),
+]
+
+
+@pytest.mark.parametrize(("name", "fields", "message"), WARNED)
+def test_inaccurate_scenes_are_warned_of(name: str, fields: dict[str, Any], message: str) -> None:
+    found = list(warnings(make_scene(name, **fields), "mpc"))
+    assert [text.startswith(message) for text in found] == [True]
+
+
+def test_the_mean_free_path_is_the_kinetic_viscosity() -> None:
+    """2D, alpha 90, n_f large: nu_kin = tau (1 / 2 - 1 / 2) = 0; alpha 10: tau (16.58 - 0.5)."""
+    (told,) = warnings(make_scene("bulk", angle=10, density=1000, collision_time=0.2), "mpc")
+    assert "mean free path of 3.22 a0" in told
+
+
+def test_fix_srd_cools_without_a_thermostat() -> None:
+    scene = make_scene("bulk", thermostat="none")
+    assert len(list(warnings(scene, "srd"))) == 1
+    assert not list(warnings(scene, "mpc"))
+
+
+def test_without_hydrodynamics_gravity_and_mean_free_path_are_the_users() -> None:
+    assert not list(warnings(make_scene("channel", hydrodynamics="bath", gravity=5), "mpc"))
+
+
+def test_faster_than_sound_is_refused() -> None:
+    with pytest.raises(SceneError, match=r"gravity = 10\.0: colloids would fall at about 3\.\d"):
+        make_scene("channel", gravity=10)
+    make_scene("channel", gravity=2)
+
+
+@pytest.mark.parametrize(
+    "fields", [{"collision_time": 0.3}, {"colloid_radius": 0.5}, {"colloid_radius": 1.0}]
+)
+def test_the_fluid_sees_colloids_as_far_as_it_must(fields: dict[str, Any]) -> None:
+    assert "comm_modify cutoff" in script(make_scene("channel", **fields), engine="mpc")
+
+
+def test_nothing_is_asked_for_where_the_neighbour_list_reaches() -> None:
+    assert "comm_modify" not in script(make_scene("channel"), engine="mpc")
