@@ -18,7 +18,6 @@ slip is in units of v_max, as its truth is 0. Prints the tables, and writes them
 import argparse
 import json
 import math
-import time
 from collections.abc import Callable, Iterable
 from dataclasses import dataclass
 from pathlib import Path
@@ -27,6 +26,7 @@ from typing import Any
 
 import numpy as np
 from matplotlib.figure import Figure
+from processor_time import cost, endless
 
 from analysis.blocking import Estimate
 from analysis.summary import summary_of
@@ -34,7 +34,6 @@ from analysis.sweep_table import combine
 from lammps_inputs import Scene, make_scene
 from lammps_inputs.deck import Engine
 from lammps_inputs.viscosity import viscosity
-from srd_driver import Simulation
 from srd_driver.run_directory import replace_text
 from srd_driver.sweep import Run, available_cores, run_all
 
@@ -116,20 +115,20 @@ def plain(name: str, scale: float = 1) -> Callable[[Summary, Scene], Estimate]:
 
 def speed_over_gravity(summary: Summary, scene: Scene) -> Estimate:
     """v_s / g: linear response [t0]."""
-    return entry(summary, "settling_speed").scaled(1 / scene.gravity)  # type: ignore[union-attr]
+    return entry(summary, "settling_speed").scaled(1 / scene.gravity)
 
 
 def inverse_drag(summary: Summary, scene: Scene) -> Estimate:
     """v_s n_f nu / (M_c g): in units of the fluid's viscosity, so that fluids may be compared."""
     fluid = scene.density * viscosity(scene.density, scene.collision_time, scene.angle)
-    return speed_over_gravity(summary, scene).scaled(fluid / scene.colloid_mass)  # type: ignore[union-attr]
+    return speed_over_gravity(summary, scene).scaled(fluid / scene.colloid_mass)
 
 
 def mobility(summary: Summary, scene: Scene) -> Estimate:
     """kBT v / (M_c g) in the frame at rest, which Einstein's relation says is D [a0^2/t0]."""
-    if not scene.gravity:  # type: ignore[union-attr]
+    if not scene.gravity:
         return entry(summary, "diffusion")
-    force = scene.colloid_mass * scene.gravity  # type: ignore[union-attr]
+    force = scene.colloid_mass * scene.gravity
     return entry(summary, "settling_speed_rest").scaled(1 / force)
 
 
@@ -252,16 +251,8 @@ def measure_speeds(scenes: dict[str, tuple[Scene, Engine]], file: Path) -> dict[
 
 
 def _cost(scene: Scene, engine: Engine) -> float:
-    """Processor seconds for a time unit, without setting up."""
-    interval = scene.sample_steps * scene.time_step
-    long = scene.model_copy(update={"duration": 1e6})
-    with Simulation(long, engine, checkpoint_interval=1e6) as simulation:
-        simulation.run(interval)
-        piece, began, start = interval, time.process_time(), simulation.time
-        while (spent := time.process_time() - began) < PIECE_SECONDS:
-            simulation.run(piece)
-            piece *= 2
-        return spent / (simulation.time - start)
+    with endless(scene, engine) as simulation:
+        return cost(simulation, PIECE_SECONDS)
 
 
 def plan(
