@@ -210,12 +210,25 @@ AXES = (
         COLLOID_TEMPERATURE,
     ),
 )
-LONG = Axis(
-    "MD steps",
-    "channel",
-    (1e5, 1e6, 1e7),
-    lambda value: {"duration": value * 0.001 - 20, "equilibration": 20, "thermostat": "none"},
-    FLUID_TEMPERATURE,
+LONG = (
+    Axis(
+        "MD steps",
+        "channel",
+        (1e5, 1e6, 1e7),
+        lambda value: {"duration": value * 0.001 - 20, "equilibration": 20},
+        COLLOID_TEMPERATURE,
+    ),
+    Axis(
+        "MD steps, no thermostat",
+        "channel",
+        (1e5, 1e6, 1e7),
+        lambda value: {
+            "duration": value * 0.001 - 20,
+            "equilibration": 20,
+            "thermostat": "none",
+        },
+        FLUID_TEMPERATURE,
+    ),
 )
 
 
@@ -338,7 +351,7 @@ def main() -> int:
     parser.add_argument("--long", action="store_true", help="also runs of up to 1e7 MD steps")
     parser.add_argument("--jobs", type=int, default=available_cores())
     options = parser.parse_args()
-    axes = [*AXES, *([LONG] if options.long else [])]
+    axes = [*AXES, *(LONG if options.long else ())]
     if options.axis:
         axes = [axis for axis in axes if axis.name in options.axis]
     judged = points(options.out, axes)

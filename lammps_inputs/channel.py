@@ -123,6 +123,12 @@ class Channel(FluidScene):
                 f"wall_sigma = {self.wall_sigma!r}: the walls overlap the colloids on the "
                 f"mid-line; must be at most half the width, {self.width / 2!r}"
             )
+        turn = self.time_step * math.sqrt(self.colloid_wall.stiffness / self.colloid_mass)
+        if turn > 1:
+            yield (
+                f"wall_strength = {self.wall_strength!r}: too stiff for steps of "
+                f"{self.time_step:.4g}; must be at most {self.wall_strength / turn**2:.2g}"
+            )
         if self.spacing is None:
             if self.colloids * diameter > self.length:
                 yield (

@@ -10,6 +10,19 @@ from lammps_inputs import Bulk, Channel, InitialState, Scene, initial_state
 from lammps_inputs.deck_lines import Start, box, head, observables, read, run, trajectory
 
 SKIN = 0.5  # of the neighbour list [a0]
+LONGEST_STEP = 0.04  # in units of r_c: at 0.03 temperatures hold, at 0.05 runs break
+
+
+def problems(scene: Scene) -> Iterator[str]:
+    """What the forces between colloids and fluid do not allow, one line each."""
+    if isinstance(scene, Channel) and scene.time_step > LONGEST_STEP * scene.colloid_radius:
+        longest = LONGEST_STEP * scene.colloid_radius
+        fewest = math.ceil(scene.collision_time / longest * (1 - 1e-9))
+        yield (
+            f"md_steps_per_collision = {scene.md_steps_per_collision!r}: steps of "
+            f"{scene.time_step:.4g} let fluid fly into the colloids; at most {longest:g}, "
+            f"{LONGEST_STEP:g} of their radius, which takes {fewest} steps"
+        )
 
 
 def write(scene: Scene, directory: Path) -> None:
@@ -77,10 +90,10 @@ def _ghost_cutoff(scene: Channel) -> float:
     """How far from its cells the fluid has to see colloids: what fix mpc asks for [a0].
 
     1.5 cells, the range of the force, and the flights of one collision interval: 7 thermal speeds
-    of the fluid, and 3 times the fastest colloid's, which drifts no faster than 1 and may have 7
-    thermal speeds of its own.
+    of the fluid, and 3 times the fastest colloid's: a drift of at most 1, 7 thermal speeds of its
+    own, and 3 that it may gain.
     """
-    colloid_speed = 1 + 7 / math.sqrt(scene.colloid_mass)
+    colloid_speed = 1 + 10 / math.sqrt(scene.colloid_mass)
     return 1.5 + scene.colloid_fluid.cutoff + scene.collision_time * (7 + 3 * colloid_speed)
 
 
