@@ -37,7 +37,7 @@ from lammps_inputs.viscosity import viscosity
 from srd_driver.run_directory import replace_text
 from srd_driver.sweep import Run, available_cores, run_all
 
-BUDGET, QUICK_BUDGET = 12.0, 2.0  # processor seconds of a setting
+BUDGET, QUICK_BUDGET = 6.0, 2.0  # processor seconds of a setting
 ROUNDS, PIECE_SECONDS = 3, 0.25  # of the measurement of speed
 TRUTH_FACTOR = 4  # the converged run has a longer budget
 TARGETS = (0.1, 0.03, 0.01)
@@ -320,8 +320,7 @@ def evaluate(
             if found.value is None or not found.error:
                 print(f"no {quantity.name} from {chosen}: {found.reason}")
                 continue
-            runs = planned[chosen]
-            simulated = sum(run.scene.collisions * run.scene.collision_time for run in runs)
+            simulated = sum(summary["simulated_time"] for summary, _ in summaries[chosen])
             yield Result(
                 quantity.name,
                 chosen,

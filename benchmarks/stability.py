@@ -29,7 +29,7 @@ from matplotlib.figure import Figure
 from analysis import RunDirectoryError
 from analysis.summary import summary_of
 from lammps_inputs import SceneError, make_scene
-from lammps_inputs.deck import Engine
+from lammps_inputs.deck import Engine, check_engine
 from lammps_inputs.limits import warnings
 from lammps_inputs.viscosity import viscosity
 from srd_driver import run_directory
@@ -104,6 +104,7 @@ def time_step(value: float, duration: float = 400) -> Fields:
         "collision_time": collision_time,
         "md_steps_per_collision": round(collision_time / value),
         "colloids": 5,
+        "gravity": 0.0,
         "duration": duration,
         "equilibration": duration / 10,
     }
@@ -119,6 +120,7 @@ def channel_collision_time(value: float) -> Fields:
     return CHANNEL | {
         "collision_time": value,
         "md_steps_per_collision": steps,
+        "gravity": 0.0,
         "sampling_interval": max(0.75, 2 * value),
     }
 
@@ -127,14 +129,14 @@ AXES = (
     Axis(
         "tau_MD",
         "channel",
-        (0.001, 0.002, 0.004, 0.01, 0.02, 0.03, 0.06, 0.1, 0.15, 0.2, 0.3, 0.5, 1),
+        (0.001, 0.004, 0.01, 0.02, 0.03, 0.06, 0.075, 0.1, 0.2),
         time_step,
         COLLOID_TEMPERATURE,
     ),
     Axis(
         "tau_MD (reference)",
         "channel",
-        (0.02, 0.06, 0.2, 0.5, 1),
+        (0.02, 0.06, 0.2),
         lambda value: time_step(value, duration=50),
         COLLOID_TEMPERATURE,
         "reference",
@@ -185,7 +187,10 @@ AXES = (
         "colloid radius",
         "channel",
         (0.05, 0.1, 0.2, 0.3, 0.5, 1, 2, 3, 4, 4.9),
-        lambda value: CHANNEL | {"colloid_radius": value, "gravity": 0.0},
+        lambda value: (
+            CHANNEL
+            | {"colloid_radius": value, "gravity": 0.0, "duration": 2000 if value > 3 else 300}
+        ),
         COLLOID_TEMPERATURE,
     ),
     Axis(
@@ -241,6 +246,7 @@ def points(folder: Path, axes: Iterable[Axis]) -> list[Point]:
             name = f"{axis.name}={value:g}".replace(" ", "_").replace(",", "")
             try:
                 scene = make_scene(axis.scene, **axis.fields(value))
+                check_engine(scene, axis.engine)
             except SceneError as error:
                 point.state = "refused"
                 point.told.append(f"refused: {error}")

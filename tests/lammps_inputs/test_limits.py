@@ -64,12 +64,11 @@ def test_steps_too_long_for_the_forces_are_refused() -> None:
     check_engine(scene, "srd")
     engines: tuple[Engine, ...] = ("mpc", "reference")
     for engine in engines:
-        with pytest.raises(
-            SceneError, match=r"md_steps_per_collision = 1: steps of 0\.1 let fluid"
-        ):
+        with pytest.raises(SceneError) as refused:
             check_engine(scene, engine)
-    (told,) = pytest.raises(SceneError, check_engine, scene, "mpc").value.problems
-    assert told.endswith("which takes 2 steps")
+        (told,) = refused.value.problems
+        assert told.startswith("md_steps_per_collision = 1: steps of 0.1 let fluid fly into")
+        assert told.endswith("which takes 2 steps")
     check_engine(make_scene("channel", collision_time=0.1, md_steps_per_collision=2), "mpc")
 
 
