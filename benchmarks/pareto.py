@@ -39,7 +39,7 @@ from srd_driver.sweep import Run, available_cores, run_all
 
 BUDGET, QUICK_BUDGET = 6.0, 2.0  # processor seconds of a setting
 ROUNDS, PIECE_SECONDS = 3, 0.25  # of the measurement of speed
-TRUTH_FACTOR = 4  # the converged run has a longer budget
+TRUTH_FACTOR = 10  # the converged run has a longer budget
 TARGETS = (0.1, 0.03, 0.01)
 SECONDS = np.geomspace(1, 1e5, 101)  # run times that the chart shows
 COLOURS = {"srd": "C1", "mpc": "C0", "reference": "C2"}
@@ -140,7 +140,7 @@ def mobility(summary: Summary, scene: Scene) -> Estimate:
 
 
 PAPER = setting("mpc", md_steps_per_collision=30)
-ONE_COLLOID = setting("mpc", gravity=0.3)
+ONE_COLLOID = setting("mpc", gravity=0.1)
 STUDIES = (
     Study(
         "bulk",

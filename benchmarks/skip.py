@@ -11,7 +11,6 @@ import contextlib
 import time
 from dataclasses import dataclass
 from pathlib import Path
-from statistics import median
 from tempfile import TemporaryDirectory
 from typing import Any
 
@@ -21,9 +20,14 @@ from processor_time import cost, endless
 
 from lammps_inputs import Scene, make_scene
 from lammps_inputs.deck import Engine, write_deck
+from srd_driver.parallel import communicator
 
 PIECE_SECONDS = 0.25
-ALONE_STEPS = 100_000
+OUTPUT = (
+    *("fix profile", "fix observables", "thermo", "dump", "compute layers", "compute thermal"),
+    *("variable fluid_temperature", "variable mean_velocity_x", " profile "),
+)
+FLUID_LINES = (*OUTPUT, "solvent")
 FLUID: dict[str, Any] = {"length": 100, "width": 50}
 CHAIN: dict[str, Any] = {"length": 300, "colloids": 31, "spacing": 5}
 
@@ -60,12 +64,10 @@ def removals(engine: Engine) -> list[Removal]:
         Removal("colloids, all but one", chain, change(chain, colloids=1), engine),
         Removal("wall potential", chain, change(chain, wall_strength=0.0), engine),
         Removal("gravity on colloids", chain, change(chain, gravity=0.0), engine),
-        Removal("sampling, colloids", chain, change(chain, sampling_interval=30.0), engine),
         Removal("thermostat, colloids", chain, change(chain, thermostat="none"), engine),
         Removal("walls", change(slit, gravity=0.0), make_scene("bulk", **FLUID), engine),
         Removal("gravity on fluid", slit, change(slit, gravity=0.0), engine),
         Removal("thermostat, fluid", slit, change(slit, thermostat="none"), engine),
-        Removal("sampling, fluid", slit, change(slit, sampling_interval=50.0), engine),
     ]
     if engine == "mpc":
         found += [
@@ -86,22 +88,51 @@ def measure(removal: Removal, pairs: int) -> tuple[float, np.ndarray]:
     return float(np.median(first)), second / first
 
 
-def colloids_alone(scene: Scene, pairs: int) -> float:
-    """Cost of the colloids of a deck of fix mpc whose fluid is left out [s for a time unit]."""
-    fluid = ("solvent", "fluid_temperature", "mean_velocity_x")
-    with TemporaryDirectory() as folder, contextlib.chdir(folder):
-        write_deck(scene, Path(), "mpc")
-        lines = Path("in.lammps").read_text(encoding="utf-8").splitlines()
-        engine = lammps(cmdargs=["-log", "none", "-screen", "none"])
-        kept = [line for line in lines[:-1] if not any(word in line for word in fluid)]
-        engine.commands_list([*kept, "thermo 100000"])
-        costs = []
-        for _ in range(pairs):
-            began = time.process_time()
-            engine.command(f"run {ALONE_STEPS} pre no" if costs else f"run {ALONE_STEPS}")
-            costs.append((time.process_time() - began) / (ALONE_STEPS * scene.time_step))
-        engine.close()
-    return median(costs)
+class EditedDeck:
+    """A deck in LAMMPS without the driver, and without the lines that have any of some words."""
+
+    def __init__(self, scene: Scene, engine: Engine, left_out: tuple[str, ...]) -> None:
+        self._time_step = scene.time_step
+        self._steps = scene.sample_steps
+        self._folder = TemporaryDirectory()
+        with contextlib.chdir(self._folder.name):
+            write_deck(scene, Path(), engine)
+            lines = Path("in.lammps").read_text(encoding="utf-8").splitlines()[:-1]
+            communicator()  # loads MPI, which LAMMPS needs
+            self._lammps = lammps(cmdargs=["-log", "none", "-screen", "none"])
+            self._lammps.commands_list(
+                [
+                    line.partition(" profile ")[0] if " profile " in left_out else line
+                    for line in lines
+                    if not any(word in line for word in left_out if word != " profile ")
+                ]
+            )
+            self._lammps.command(f"run {self._steps}")
+
+    def cost(self) -> float:
+        """Processor seconds for a time unit."""
+        began, steps, piece = time.process_time(), 0, self._steps
+        with contextlib.chdir(self._folder.name):
+            while (spent := time.process_time() - began) < PIECE_SECONDS:
+                self._lammps.command(f"run {piece} pre no")
+                steps += piece
+                piece *= 2
+        return spent / (steps * self._time_step)
+
+    def close(self) -> None:
+        self._lammps.close()
+        self._folder.cleanup()
+
+
+def measure_edited(
+    scene: Scene, engine: Engine, left_out: tuple[str, ...], pairs: int
+) -> tuple[float, np.ndarray]:
+    """As `measure`, for the deck with and without some lines."""
+    decks = EditedDeck(scene, engine, ()), EditedDeck(scene, engine, left_out)
+    first, second = np.array([[deck.cost() for deck in decks] for _ in range(pairs)]).T
+    for deck in decks:
+        deck.close()
+    return float(np.median(first)), second / first
 
 
 def main() -> None:
@@ -114,20 +145,24 @@ def main() -> None:
         "| engine | without | whole [ms for t0] | cost without / with | quartiles |",
         "|---|---|---|---|---|",
     ]
+
+    def tell(engine: Engine, part: str, whole: float, ratios: np.ndarray) -> None:
+        low, middle, high = np.percentile(ratios, (25, 50, 75))
+        rows.append(
+            f"| {engine} | {part} | {1e3 * whole:.3g} | {middle:.3f} | {low:.3f} to {high:.3f} |"
+        )
+        print(rows[-1], flush=True)
+
     engines: tuple[Engine, ...] = ("mpc", "srd")
     for engine in engines:
+        scenes = {removal.whole.name: removal.whole for removal in removals(engine)}
+        for name, scene in scenes.items():
+            tell(engine, f"output, {name}", *measure_edited(scene, engine, OUTPUT, options.pairs))
+        if engine == "mpc":
+            fluid = measure_edited(scenes["channel"], engine, FLUID_LINES, options.pairs)
+            tell(engine, "fluid, and output", *fluid)
         for removal in removals(engine):
-            whole, ratios = measure(removal, options.pairs)
-            low, middle, high = np.percentile(ratios, (25, 50, 75))
-            rows.append(
-                f"| {engine} | {removal.part} | {1e3 * whole:.3g} | {middle:.3f} | "
-                f"{low:.3f} to {high:.3f} |"
-            )
-            print(rows[-1], flush=True)
-    whole = removals("mpc")[0].whole
-    alone = colloids_alone(whole, options.pairs)
-    rows += ["", f"31 colloids without any fluid: {1e3 * alone:.3g} ms for t0"]
-    print(rows[-1])
+            tell(engine, removal.part, *measure(removal, options.pairs))
     (options.out / "skip.md").write_text("\n".join(rows) + "\n", encoding="utf-8")
 
 

@@ -313,6 +313,19 @@ def _cause(failure: str) -> str:
     return re.sub(r" \(\S*(/|: )[^)]*\)", "", text).removeprefix(" on proc 0: ").strip()
 
 
+def map_table(judged: list[Point]) -> str:
+    """One row an axis: its values by state."""
+    states: tuple[State, ...] = ("stable", "inaccurate", "broken", "refused")
+    rows = [f"| axis | must be 1 | {' | '.join(states)} |", "|---|---|---|---|---|---|"]
+    for axis in dict.fromkeys(point.axis for point in judged):
+        cells = [
+            ", ".join(f"{p.value:g}" for p in judged if p.axis is axis and p.state == state)
+            for state in states
+        ]
+        rows.append(f"| {axis.name} | {axis.criterion.ratio} | {' | '.join(cells)} |")
+    return "\n".join(rows)
+
+
 def table(judged: list[Point]) -> str:
     """One row a point."""
     rows = ["| axis | value | ratio | state | told by |", "|---|---|---|---|---|"]
@@ -332,15 +345,16 @@ def draw(judged: list[Point], file: Path) -> None:
     panels = sheet.subplots(rows, columns, squeeze=False).flat
     for axis, panel in zip(axes, panels, strict=False):
         low, high = 0.5, 1.5
-        for point in (point for point in judged if point.axis is axis):
+        for place, point in enumerate(point for point in judged if point.axis is axis):
             colour = COLOURS[point.state]
             if point.ratio is None:
-                panel.plot(point.value, high, "x", color=colour)
+                panel.plot(place, high, "x", color=colour)
             else:
                 shown = min(max(point.ratio, low), high)
-                panel.errorbar(point.value, shown, point.error, fmt="o", color=colour)
+                panel.errorbar(place, shown, point.error, fmt="o", color=colour)
         panel.axhspan(1 - axis.criterion.inaccurate, 1 + axis.criterion.inaccurate, color="0.92")
-        panel.set_xscale("symlog", linthresh=1e-8) if 0 in axis.values else panel.set_xscale("log")
+        labels = [f"{value:g}" for value in axis.values]
+        panel.set_xticks(range(len(labels)), labels, rotation=60)
         panel.set(xlabel=axis.name, ylabel=axis.criterion.ratio, ylim=(low - 0.05, high + 0.05))
     for panel in list(panels):
         panel.set_visible(False)
@@ -362,7 +376,7 @@ def main() -> int:
         axes = [axis for axis in axes if axis.name in options.axis]
     judged = points(options.out, axes)
     execute(judged, options.jobs)
-    text = table(judged)
+    text = f"{map_table(judged)}\n\n{table(judged)}"
     print(text)
     (options.out / "stability.md").write_text(text + "\n", encoding="utf-8")
     draw(judged, options.out / "stability.png")

@@ -10,18 +10,23 @@ from lammps_inputs import Bulk, Channel, InitialState, Scene, initial_state
 from lammps_inputs.deck_lines import Start, box, head, observables, read, run, trajectory
 
 SKIN = 0.5  # of the neighbour list [a0]
-LONGEST_STEP = 0.04  # in units of r_c: at 0.03 temperatures hold, at 0.05 runs break
+LONGEST_STEP = 0.032  # in r_c sqrt(mu): at 0.030 temperatures hold, at 0.0375 runs break
 
 
 def problems(scene: Scene) -> Iterator[str]:
-    """What the forces between colloids and fluid do not allow, one line each."""
-    if isinstance(scene, Channel) and scene.time_step > LONGEST_STEP * scene.colloid_radius:
-        longest = LONGEST_STEP * scene.colloid_radius
-        fewest = math.ceil(scene.collision_time / longest * (1 - 1e-9))
+    """What the forces between colloids and fluid do not allow, one line each.
+
+    A thermal collision takes about r_c sqrt(mu) / 6, mu the reduced mass of colloid and particle.
+    """
+    if not isinstance(scene, Channel):
+        return
+    reduced_mass = scene.colloid_mass / (1 + scene.colloid_mass)
+    longest = LONGEST_STEP * scene.colloid_radius * math.sqrt(reduced_mass)
+    if scene.time_step > longest:
         yield (
             f"md_steps_per_collision = {scene.md_steps_per_collision!r}: steps of "
-            f"{scene.time_step:.4g} let fluid fly into the colloids; at most {longest:g}, "
-            f"{LONGEST_STEP:g} of their radius, which takes {fewest} steps"
+            f"{scene.time_step:.4g} let fluid fly into the colloids; at most {longest:.2g}, which "
+            f"takes {math.ceil(scene.collision_time / longest)} steps"
         )
 
 

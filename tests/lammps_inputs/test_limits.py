@@ -59,7 +59,7 @@ def test_faster_than_sound_is_refused() -> None:
 
 
 def test_steps_too_long_for_the_forces_are_refused() -> None:
-    """0.1 / 1 is more than 0.04 * 2; fix srd has no such forces."""
+    """0.1 / 1 is more than 0.032 * 2; fix srd has no such forces; light colloids need less."""
     scene = make_scene("channel", collision_time=0.1, md_steps_per_collision=1, gravity=0)
     check_engine(scene, "srd")
     engines: tuple[Engine, ...] = ("mpc", "reference")
@@ -69,7 +69,9 @@ def test_steps_too_long_for_the_forces_are_refused() -> None:
         (told,) = refused.value.problems
         assert told.startswith("md_steps_per_collision = 1: steps of 0.1 let fluid fly into")
         assert told.endswith("which takes 2 steps")
-    check_engine(make_scene("channel", collision_time=0.1, md_steps_per_collision=2), "mpc")
+    check_engine(make_scene("channel", collision_time=0.06, md_steps_per_collision=1), "mpc")
+    with pytest.raises(SceneError, match="which takes 35 steps"):  # 0.032 * 0.05 * sqrt(0.0728)
+        check_engine(make_scene("channel", colloid_radius=0.05), "mpc")
 
 
 def test_walls_too_stiff_for_the_step_are_refused() -> None:
