@@ -2,7 +2,7 @@
 
 import json
 import os
-from collections.abc import Mapping
+from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any
@@ -11,7 +11,7 @@ import numpy as np
 from matplotlib.figure import Figure
 from numpy.typing import NDArray
 
-from analysis import blocking, chain, figures, flow
+from analysis import blocking, chain, figures, flow, health
 from analysis.blocking import Estimate
 from analysis.diffusion import diffusion
 from analysis.pair_correlation import pair_correlation
@@ -55,11 +55,21 @@ def analyze(directory: str | Path) -> dict[str, Any]:
         _slit_flow(run, results)
     if run.has_colloids:
         _colloids(run, results)
+    results.summary["warnings"] = list(_warnings(run, results.summary))
     results.summary["figures"] = sorted(results.figures)
     for name, figure in results.figures.items():
         figure.savefig(run.path / name, dpi=150)
     _write_json(run.path / "summary.json", results.summary)
     return results.summary
+
+
+def summary_of(directory: Path) -> dict[str, Any]:
+    """The summary of a finished run, analysed unless that was done since it finished."""
+    file, progress = directory / "summary.json", directory / "progress.json"
+    if file.is_file() and file.stat().st_mtime >= progress.stat().st_mtime:
+        content: dict[str, Any] = json.loads(file.read_text(encoding="utf-8"))
+        return content
+    return analyze(directory)
 
 
 def estimates(summary: Mapping[str, Any]) -> dict[str, dict[str, Any]]:
@@ -90,6 +100,18 @@ def _whole_run(run: RunDirectory) -> dict[str, Any]:
         "colloids": run.manifest["colloids"],
         "temperature": temperature.as_json(),
     }
+
+
+def _warnings(run: RunDirectory, summary: dict[str, Any]) -> Iterator[str]:
+    """What the run shows that no correct simulation would; empty for a healthy one."""
+    fluid = Estimate(**summary["temperature"])
+    if not run.has_colloids:
+        yield from health.temperature_warnings(fluid, None)
+        return
+    yield from health.temperature_warnings(fluid, Estimate(**summary["colloid_temperature"]))
+    yield from health.overlap_warnings(
+        run.colloids.positions, run.number("length"), 2 * run.number("colloid_radius")
+    )
 
 
 def _with_theory(viscosity: Estimate, run: RunDirectory) -> dict[str, Any]:

@@ -10,6 +10,9 @@ from pydantic import Field, field_validator
 
 from lammps_inputs.potentials import IntegratedWall, RepulsiveMie
 from lammps_inputs.scene import FluidScene, NonNegative, Positive
+from lammps_inputs.viscosity import viscosity
+
+SOUND = 1.0  # speed in an ideal gas that a thermostat keeps at kBT = m_f = 1 [a0/t0]
 
 
 class Channel(FluidScene):
@@ -77,6 +80,15 @@ class Channel(FluidScene):
         return self.md_steps_per_collision
 
     @property
+    def expected_speed(self) -> float:
+        """Settling speed by the measured drag, v_s n_f nu / (M_c g) = 0.13 at 40 x 10 [a0/t0].
+
+        An estimate, within a factor of two for other sizes.
+        """
+        nu = viscosity(self.density, self.collision_time, min(self.angle, 179.0))
+        return 0.13 * math.pi * self.colloid_radius**2 * abs(self.gravity) / nu
+
+    @property
     def colloid_colloid(self) -> RepulsiveMie:
         """The 48-24 repulsion (3.43) with sigma_cc = 2 r_c."""
         return RepulsiveMie(sigma=2 * self.colloid_radius, exponent=24)
@@ -111,6 +123,12 @@ class Channel(FluidScene):
                 f"wall_sigma = {self.wall_sigma!r}: the walls overlap the colloids on the "
                 f"mid-line; must be at most half the width, {self.width / 2!r}"
             )
+        turn = self.time_step * math.sqrt(self.colloid_wall.stiffness / self.colloid_mass)
+        if turn > 1:
+            yield (
+                f"wall_strength = {self.wall_strength!r}: too stiff for steps of "
+                f"{self.time_step:.4g}; must be at most {self.wall_strength / turn**2:.2g}"
+            )
         if self.spacing is None:
             if self.colloids * diameter > self.length:
                 yield (
@@ -123,6 +141,12 @@ class Channel(FluidScene):
             yield (
                 f"spacing = {self.spacing!r}: {self.colloids} colloids do not fit in a length of "
                 f"{self.length!r}"
+            )
+        if self.hydrodynamics == "on" and self.expected_speed > SOUND:
+            yield (
+                f"gravity = {self.gravity!r}: colloids would fall at about "
+                f"{self.expected_speed:.2g}, faster than sound in the fluid ({SOUND:g}); must be "
+                f"less than {self.gravity * SOUND / self.expected_speed:.2g}"
             )
         if self.length < 2 * self.colloid_colloid.cutoff:
             yield (

@@ -22,7 +22,7 @@ def check_engine(scene: Scene, engine: Engine) -> None:
     Raises:
         SceneError: naming the field, its value and what the engine allows.
     """
-    problems = list(srd_deck.problems(scene)) if engine == "srd" else []
+    problems = list((srd_deck if engine == "srd" else mpc_deck).problems(scene))
     if problems:
         raise SceneError(problems)
 

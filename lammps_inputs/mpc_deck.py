@@ -1,5 +1,6 @@
 """The deck of `fix mpc`: the fluid lives in the fix, LAMMPS's atoms are the colloids."""
 
+import math
 from collections.abc import Iterable, Iterator
 from pathlib import Path
 
@@ -7,6 +8,26 @@ import numpy as np
 
 from lammps_inputs import Bulk, Channel, InitialState, Scene, initial_state
 from lammps_inputs.deck_lines import Start, box, head, observables, read, run, trajectory
+
+SKIN = 0.5  # of the neighbour list [a0]
+LONGEST_STEP = 0.032  # in r_c sqrt(mu): at 0.030 temperatures hold, at 0.0375 runs break
+
+
+def problems(scene: Scene) -> Iterator[str]:
+    """What the forces between colloids and fluid do not allow, one line each.
+
+    A thermal collision takes about r_c sqrt(mu) / 6, mu the reduced mass of colloid and particle.
+    """
+    if not isinstance(scene, Channel):
+        return
+    reduced_mass = scene.colloid_mass / (1 + scene.colloid_mass)
+    longest = LONGEST_STEP * scene.colloid_radius * math.sqrt(reduced_mass)
+    if scene.time_step > longest:
+        yield (
+            f"md_steps_per_collision = {scene.md_steps_per_collision!r}: steps of "
+            f"{scene.time_step:.4g} let fluid fly into the colloids; at most {longest:.2g}, which "
+            f"takes {math.ceil(scene.collision_time / longest)} steps"
+        )
 
 
 def write(scene: Scene, directory: Path) -> None:
@@ -39,8 +60,10 @@ def lines(scene: Scene, start: Start) -> Iterator[str]:
         yield f"pair_style mie/cut {scene.colloid_colloid.cutoff!r}"
         yield scene.colloid_colloid.pair_coeff("1 1")
         yield "pair_modify shift yes"
-        yield "neighbor 0.5 bin"
+        yield f"neighbor {SKIN!r} bin"
         yield "neigh_modify delay 0 every 1 check yes"
+        if _ghost_cutoff(scene) > scene.colloid_colloid.cutoff + SKIN:
+            yield f"comm_modify cutoff {_ghost_cutoff(scene):.6g} # the fluid sees colloids so far"
     else:
         yield "pair_style none"
         yield "comm_modify cutoff 1.0"
@@ -66,6 +89,17 @@ def lines(scene: Scene, start: Start) -> Iterator[str]:
     if isinstance(scene, Channel):
         yield from trajectory(start)
     yield from run()
+
+
+def _ghost_cutoff(scene: Channel) -> float:
+    """How far from its cells the fluid has to see colloids: what fix mpc asks for [a0].
+
+    1.5 cells, the range of the force, and the flights of one collision interval: 7 thermal speeds
+    of the fluid, and 3 times the fastest colloid's: a drift of at most 1, 7 thermal speeds of its
+    own, and 3 that it may gain.
+    """
+    colloid_speed = 1 + 10 / math.sqrt(scene.colloid_mass)
+    return 1.5 + scene.colloid_fluid.cutoff + scene.collision_time * (7 + 3 * colloid_speed)
 
 
 def _solvent(scene: Scene, start: Start) -> Iterator[str]:

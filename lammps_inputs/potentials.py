@@ -85,6 +85,11 @@ class IntegratedWall:
     def _shift(self) -> float:
         return float(6 / 11 * (160 / 231) ** (5 / 6))
 
+    @property
+    def stiffness(self) -> float:
+        """Second derivative of the energy where it begins, at the cutoff [kBT/a0^2]."""
+        return -self._slope(self.cutoff)
+
     def energy(self, y: ArrayLike) -> Array:
         """Energy at distances y > 0 from the wall (any shape) [kBT]."""
         y = np.asarray(y, dtype=float)

@@ -38,6 +38,8 @@ def analyze(
     files = ["summary.json", *summary["figures"]]
     files_line = f"written to {directory}: {', '.join(files)}"
     console.print(files_line, highlight=False, markup=False, soft_wrap=True)
+    for warning in summary["warnings"]:
+        typer.echo(f"warning: {warning}", err=True)
 
 
 def _tabulate(directory: Path) -> None:

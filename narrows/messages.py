@@ -1,7 +1,7 @@
 """What the command line says: results on stdout, complaints on stderr, each process group once."""
 
 import sys
-from collections.abc import Iterator
+from collections.abc import Iterable, Iterator
 from contextlib import contextmanager
 
 import typer
@@ -15,6 +15,13 @@ def say(text: str) -> None:
     """Print a result, on the first process only."""
     if _first_process():
         print(text, flush=True)
+
+
+def warn(warnings: Iterable[str]) -> None:
+    """Tell of what will be inaccurate, one line each on stderr, on the first process only."""
+    if _first_process():
+        for warning in warnings:
+            print(f"warning: {warning}", file=sys.stderr, flush=True)
 
 
 @contextmanager

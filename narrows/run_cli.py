@@ -15,7 +15,8 @@ from rich.progress import BarColumn, Progress, TextColumn, TimeRemainingColumn
 import lammps_plugin
 from lammps_inputs import SCENES, Scene, SceneError, make_scene, parse_assignment, read_scene
 from lammps_inputs.deck import DEFAULT_ENGINE, Engine, write_deck
-from narrows.messages import say, user_errors
+from lammps_inputs.limits import warnings
+from narrows.messages import say, user_errors, warn
 from srd_driver import RunError, Simulation
 from srd_driver.parallel import agree, communicator
 from srd_driver.run_directory import is_half_made, stored_engine, stored_fields
@@ -41,6 +42,7 @@ def deck(
     """Write a folder that runs with `lmp -in in.lammps`, for fix srd or fix mpc."""
     with user_errors():
         chosen = _scene(scene, {}, file, settings)
+        warn(warnings(chosen, engine))
         out.mkdir(parents=True, exist_ok=True)
         if any(out.iterdir()):
             raise RunError(f"{out} is not empty: choose another folder")
@@ -70,6 +72,7 @@ def run(
         )
         chosen = _scene(scene, stored, file, settings)
         engine = engine or engine_before or DEFAULT_ENGINE
+        warn(warnings(chosen, engine))
         with (
             Simulation(chosen, engine, out, resume, checkpoint_interval) as simulation,
             _stopped_by_signals(simulation),

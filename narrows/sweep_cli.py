@@ -15,7 +15,8 @@ from rich.progress import BarColumn, Progress, TaskID, TextColumn, TimeRemaining
 
 from lammps_inputs import SceneError, parse_assignment
 from lammps_inputs.deck import DEFAULT_ENGINE, Engine
-from narrows.messages import say, user_errors
+from lammps_inputs.limits import warnings
+from narrows.messages import say, user_errors, warn
 from narrows.run_cli import SceneFile, SceneName, Settings, scene_fields
 from srd_driver import RunError, sweep_definition
 from srd_driver.parallel import communicator
@@ -60,6 +61,8 @@ def sweep(
         asked = sweep_definition.plan(
             out, scene, _fixed(scene, file, settings, over), _lists(over), repeats, engine
         )
+        told = (warning for run in asked.runs for warning in warnings(run.scene, run.engine))
+        warn(dict.fromkeys(told))
         sweep_definition.store(asked)
         if commands:
             _write_commands(asked, commands)

@@ -187,6 +187,7 @@ def test_channel(tmp_path):
     assert spacings["groups_initial"] == pytest.approx([(7.0 + 4 * 5.0) / 5], abs=0.05)
     assert spacings["left_out_at_tail"] == 1
     assert summary["pair_correlation"]["bin_width"] == pytest.approx(0.1)
+    assert summary["warnings"] == []
     assert summary["figures"] == [
         "diffusion.png",
         "pair_correlation.png",
@@ -196,6 +197,20 @@ def test_channel(tmp_path):
         "spacings.png",
         "zigzag.png",
     ]
+
+
+def test_a_run_that_went_wrong_says_so(tmp_path):
+    """Colloids twice as hot as the fluid, two of them 1 apart in one frame."""
+    channel(tmp_path, mass=50.0)
+    trajectory = tmp_path / "trajectory.lammpsdump"
+    text = trajectory.read_text().splitlines()
+    last = next(n for n in range(len(text) - 1, 0, -1) if text[n].startswith("2 1 "))
+    first = text[last - 1].split()
+    text[last] = " ".join(["2", "1", str(float(first[2]) + 1.0), *first[3:]])
+    trajectory.write_text("\n".join(text) + "\n")
+    hot, overlapping = analyzed(tmp_path)["warnings"]
+    assert hot.startswith("the temperature of the colloids is")
+    assert overlapping.startswith("two colloids came within 1 of each other")
 
 
 def test_single_colloid_has_no_chain(tmp_path):

@@ -15,6 +15,7 @@ from tests.conftest import ROOT, Run
 from tests.lammps_inputs.test_decks import frames
 
 SHORT = ["--set", "duration=1.2", "--set", "equilibration=0", "--set", "sampling_interval=0.15"]
+THIN = ["--set", "density=0.5", "--set", "duration=10"]
 
 
 def test_deck_writes_a_folder_that_lmp_runs(tmp_path: Path, command: Run) -> None:
@@ -77,6 +78,16 @@ def test_a_run_is_quiet_without_a_terminal(tmp_path: Path, command: Run) -> None
     assert f"{out} is not empty: go on with its run by --resume" in refused.stderr
     again = command("narrows", "run", "channel", "--out", out, "--resume")
     assert again.stdout == f"{out}: finished before, at time 1.2\n"
+
+
+def test_what_will_be_inaccurate_is_one_warning_and_runs(tmp_path: Path, command: Run) -> None:
+    done = command("narrows", "deck", "bulk", "--set", "density=0.5", "--out", tmp_path / "deck")
+    assert done.stderr.startswith("warning: density = 0.5: most fluid particles are alone")
+    assert all(line.startswith("warning: ") for line in done.stderr.splitlines())
+    again = command("narrows", "run", "bulk", *THIN, "--out", tmp_path / "run")
+    assert again.stderr == done.stderr
+    analysed = command("narrows", "analyze", tmp_path / "run")
+    assert analysed.stderr.startswith("warning: the temperature of the fluid is 0.")
 
 
 def test_two_processes_are_one_run(tmp_path: Path, command: Run) -> None:

@@ -1,0 +1,421 @@
+"""Error of every quantity against run time, for all engines and settings: chart and table.
+
+    python benchmarks/pareto.py --out runs/pareto [--quick] [--jobs 2]
+
+1. The speed of each setting is measured, processor seconds for a unit of simulated time: all
+   settings in turn, several rounds, the median of each; kept in speed.json.
+2. Each setting runs for the same budget of processor time, in run directories that are skipped
+   when finished: value, statistical error and so the systematic deviation from the truth.
+3. A run of t seconds then has the error sqrt(b^2 + s^2 T / t), s the statistical error after T
+   seconds. b is the deviation, or the error to which it is known where that is more: no setting is
+   credited with an accuracy that was not measured.
+
+The front is the smallest error any setting reaches in a time. Errors are relative; that of wall
+slip is in units of v_max, as its truth is 0. Prints the tables, and writes them with the figure
+(pareto.png) into the folder.
+"""
+
+import argparse
+import json
+import math
+from collections.abc import Callable, Iterable
+from dataclasses import dataclass
+from pathlib import Path
+from statistics import median
+from typing import Any
+
+import numpy as np
+from matplotlib.figure import Figure
+from processor_time import cost, endless
+
+from analysis.blocking import Estimate
+from analysis.summary import summary_of
+from analysis.sweep_table import combine
+from lammps_inputs import Scene, make_scene
+from lammps_inputs.deck import Engine
+from lammps_inputs.viscosity import viscosity
+from srd_driver.run_directory import replace_text
+from srd_driver.sweep import Run, available_cores, run_all
+
+BUDGET, QUICK_BUDGET = 6.0, 2.0  # processor seconds of a setting
+ROUNDS, PIECE_SECONDS = 3, 0.25  # of the measurement of speed
+TRUTH_FACTOR = 10  # the converged run has a longer budget
+TARGETS = (0.1, 0.03, 0.01)
+SECONDS = np.geomspace(1, 1e5, 101)  # run times that the chart shows
+COLOURS = {"srd": "C1", "mpc": "C0", "reference": "C2"}
+
+Fields = dict[str, Any]
+Summary = dict[str, Any]
+
+
+@dataclass(frozen=True)
+class Setting:
+    """An engine and the fields of a scene that are not those of its study."""
+
+    engine: Engine
+    changes: tuple[tuple[str, Any], ...] = ()
+
+    def __str__(self) -> str:
+        return " ".join([self.engine, *(f"{name}={value}" for name, value in self.changes)])
+
+
+def setting(engine: Engine, **changes: Any) -> Setting:
+    return Setting(engine, tuple(changes.items()))
+
+
+@dataclass(frozen=True)
+class Quantity:
+    """A number of a run that is compared with its truth: theory's, or that of a converged run.
+
+    Settings that change one of the `physics` have another truth, and are left out.
+    """
+
+    name: str
+    measure: Callable[[Summary, Scene], Estimate]
+    truth: float | Setting
+    physics: tuple[str, ...] = ()
+
+    def concerns(self, chosen: Setting) -> bool:
+        return not any(name in self.physics for name, _ in chosen.changes)
+
+
+@dataclass(frozen=True)
+class Study:
+    """One scene at all settings, and what is asked of it.
+
+    Runs are lengthened to the budget where the scene is stationary, else repeated by seeds.
+    """
+
+    scene: str
+    fields: Fields
+    settings: tuple[Setting, ...]
+    quantities: tuple[Quantity, ...]
+    stationary: bool = True
+    converged: Setting | None = None
+
+    def make(self, chosen: Setting, **more: Any) -> Scene:
+        return make_scene(self.scene, **(self.fields | dict(chosen.changes) | more))
+
+    @property
+    def all_settings(self) -> tuple[Setting, ...]:
+        return (*self.settings, *([self.converged] if self.converged else []))
+
+
+def entry(summary: Summary, name: str) -> Estimate:
+    found = summary[name]
+    return Estimate(found["value"], found["error"], found.get("reason"))
+
+
+def relative(name: str) -> Callable[[Summary, Scene], Estimate]:
+    """A viscosity over that of kinetic theory."""
+
+    def measure(summary: Summary, scene: Scene) -> Estimate:
+        theory = viscosity(scene.density, scene.collision_time, scene.angle)
+        return entry(summary, name).scaled(1 / theory)
+
+    return measure
+
+
+def plain(name: str, scale: float = 1) -> Callable[[Summary, Scene], Estimate]:
+    return lambda summary, scene: entry(summary, name).scaled(scale)
+
+
+def speed_over_gravity(summary: Summary, scene: Scene) -> Estimate:
+    """v_s / g: linear response [t0]."""
+    return entry(summary, "settling_speed").scaled(1 / scene.gravity)
+
+
+def inverse_drag(summary: Summary, scene: Scene) -> Estimate:
+    """v_s n_f nu / (M_c g): in units of the fluid's viscosity, so that fluids may be compared."""
+    fluid = scene.density * viscosity(scene.density, scene.collision_time, scene.angle)
+    return speed_over_gravity(summary, scene).scaled(fluid / scene.colloid_mass)
+
+
+def mobility(summary: Summary, scene: Scene) -> Estimate:
+    """kBT v / (M_c g) in the frame at rest, which Einstein's relation says is D [a0^2/t0]."""
+    if not scene.gravity:
+        return entry(summary, "diffusion")
+    force = scene.colloid_mass * scene.gravity
+    return entry(summary, "settling_speed_rest").scaled(1 / force)
+
+
+PAPER = setting("mpc", md_steps_per_collision=30)
+ONE_COLLOID = setting("mpc", gravity=0.1)
+STUDIES = (
+    Study(
+        "bulk",
+        {"length": 96, "width": 32, "shear_wave": 0.4, "sampling_interval": 0.5, "duration": 60},
+        (
+            *(setting("srd", collision_time=tau) for tau in (0.05, 0.1, 0.2, 0.5)),
+            *(setting("srd", density=density) for density in (3, 30)),
+            *(setting("mpc", collision_time=tau) for tau in (0.05, 0.1, 0.2, 0.5)),
+            *(setting("mpc", density=density) for density in (3, 30)),
+            setting("mpc", collision_time=0.5, density=30, sampling_interval=1.0),
+            setting("mpc", thermostat="none"),
+            setting("mpc", width=16, duration=20),
+            setting("reference"),
+        ),
+        (Quantity("viscosity, shear wave", relative("viscosity"), 1.0),),
+        stationary=False,
+    ),
+    Study(
+        "poiseuille",
+        {"length": 25, "width": 25, "gravity": 0.004, "equilibration": 300},
+        (
+            *(setting("srd", collision_time=tau) for tau in (0.05, 0.1, 0.2)),
+            setting("srd", density=3),
+            *(setting("mpc", collision_time=tau) for tau in (0.05, 0.1, 0.2)),
+            *(setting("mpc", density=density) for density in (3, 30)),
+            *(setting("mpc", gravity=gravity) for gravity in (0.001, 0.01)),
+            setting("srd", gravity=0.001),
+            setting("mpc", collision_time=0.02),
+            setting("mpc", width=50, gravity=0.001, equilibration=1000),
+            setting("reference", equilibration=150),
+        ),
+        (
+            Quantity("viscosity, Poiseuille curvature", relative("viscosity_curvature"), 1.0),
+            Quantity("wall slip", plain("wall_slip", 0.01), 0.0),
+        ),
+    ),
+    Study(
+        "channel",
+        {"equilibration": 50},
+        (
+            *(setting("mpc", md_steps_per_collision=steps) for steps in (15, 5, 3, 1)),
+            setting("mpc", gravity=0.3, md_steps_per_collision=5),
+            *(
+                setting("mpc", thermostat=thermostat)
+                for thermostat in ("none", "monte_carlo", "maxwell_boltzmann")
+            ),
+            *(setting("mpc", density=density) for density in (5, 20)),
+            *(
+                setting("mpc", collision_time=tau, md_steps_per_collision=steps)
+                for tau, steps in ((0.03, 10), (0.06, 20), (0.06, 3), (0.1, 33))
+            ),
+            setting("srd"),
+            setting("srd", md_steps_per_collision=5),
+            setting("srd", collision_time=0.06, md_steps_per_collision=20),
+            setting("reference", md_steps_per_collision=5, equilibration=5),
+        ),
+        (
+            Quantity("settling speed", speed_over_gravity, PAPER, ("density", "collision_time")),
+            Quantity("inverse drag", inverse_drag, PAPER),
+            Quantity("fluid temperature", plain("temperature"), 1.0),
+            Quantity("colloid temperature", plain("colloid_temperature"), 1.0),
+        ),
+        converged=PAPER,
+    ),
+    Study(
+        "channel",
+        {"equilibration": 50, "colloids": 1, "gravity": 0.0},
+        (
+            setting("mpc"),
+            setting("mpc", md_steps_per_collision=5),
+            setting("srd"),
+            setting("srd", md_steps_per_collision=5),
+        ),
+        (Quantity("colloid diffusion", mobility, ONE_COLLOID),),
+        converged=ONE_COLLOID,
+    ),
+)
+
+
+@dataclass(frozen=True)
+class Result:
+    """A setting's number: what a run of `seconds` processor seconds gives, against the truth."""
+
+    quantity: str
+    setting: Setting
+    value: float
+    statistical: float
+    seconds: float
+    deviation: float
+    deviation_error: float
+
+    def error(self, seconds: Any) -> Any:
+        """Expected error of a run of so many processor seconds."""
+        floor = max(abs(self.deviation), self.deviation_error)
+        return np.hypot(floor, self.statistical * np.sqrt(self.seconds / seconds))
+
+    def time_to(self, error: float) -> float:
+        """Processor seconds to that error; infinite where the deviation is larger."""
+        floor = max(abs(self.deviation), self.deviation_error)
+        if error <= floor:
+            return math.inf
+        return self.seconds * self.statistical**2 / (error**2 - floor**2)
+
+
+def measure_speeds(scenes: dict[str, tuple[Scene, Engine]], file: Path) -> dict[str, float]:
+    """Processor seconds for one time unit of each scene; those in the file are not measured."""
+    known: dict[str, float] = json.loads(file.read_text()) if file.exists() else {}
+    missing = [name for name in scenes if name not in known]
+    rounds: dict[str, list[float]] = {name: [] for name in missing}
+    for _ in range(ROUNDS):
+        for name in missing:
+            rounds[name].append(_cost(*scenes[name]))
+    known |= {name: median(costs) for name, costs in rounds.items()}
+    replace_text(file, json.dumps(known, indent=1) + "\n")
+    return known
+
+
+def _cost(scene: Scene, engine: Engine) -> float:
+    with endless(scene, engine) as simulation:
+        return cost(simulation, PIECE_SECONDS)
+
+
+def plan(
+    study: Study, number: int, folder: Path, speeds: dict[str, float], budget: float
+) -> dict[Setting, list[Run]]:
+    """The runs that spend the budget on each setting."""
+    planned: dict[Setting, list[Run]] = {}
+    for chosen in study.all_settings:
+        seconds = budget * (TRUTH_FACTOR if chosen == study.converged else 1)
+        scene = study.make(chosen)
+        affordable = seconds / speeds[_name(number, chosen)]
+        if study.stationary:
+            duration = max(_rounded(affordable - scene.equilibration), 20.0)
+            scenes = [study.make(chosen, duration=duration)]
+        else:
+            count = max(2, min(12, round(affordable / (scene.duration + scene.equilibration))))
+            scenes = [study.make(chosen, seed=seed) for seed in range(1, count + 1)]
+        planned[chosen] = [
+            Run(folder / f"{_name(number, chosen)}_seed={scene.seed}", scene, chosen.engine)
+            for scene in scenes
+        ]
+    return planned
+
+
+def _rounded(value: float) -> float:
+    """To two digits, so that a run has a length one can quote."""
+    return float(f"{max(value, 0):.2g}")
+
+
+def _name(number: int, chosen: Setting) -> str:
+    return f"{number}_{chosen}".replace(" ", "_")
+
+
+def evaluate(
+    study: Study, number: int, planned: dict[Setting, list[Run]], speeds: dict[str, float]
+) -> Iterable[Result]:
+    """All numbers of a study; settings that do not tell a number are left out."""
+    summaries = {
+        chosen: [(summary_of(run.folder), run.scene) for run in runs]
+        for chosen, runs in planned.items()
+    }
+    for quantity in study.quantities:
+        told = {
+            chosen: combine([quantity.measure(*one) for one in of_runs])
+            for chosen, of_runs in summaries.items()
+        }
+        if isinstance(quantity.truth, Setting):
+            truth = told[quantity.truth]
+            assert truth.value is not None
+            assert truth.error is not None
+            true_value, true_error = truth.value, truth.error
+        else:
+            true_value, true_error = quantity.truth, 0.0
+        unit = true_value or 1.0
+        for chosen in filter(quantity.concerns, study.settings):
+            found = told[chosen]
+            if found.value is None or not found.error:
+                print(f"no {quantity.name} from {chosen}: {found.reason}")
+                continue
+            simulated = sum(summary["simulated_time"] for summary, _ in summaries[chosen])
+            yield Result(
+                quantity.name,
+                chosen,
+                found.value,
+                found.error / unit,
+                simulated * speeds[_name(number, chosen)],
+                (found.value - true_value) / unit,
+                math.hypot(found.error, true_error) / unit,
+            )
+
+
+def recommended(results: list[Result]) -> str:
+    """For each quantity and wanted error the setting that reaches it first."""
+    rows = ["| quantity | error | setting | processor time |", "|---|---|---|---|"]
+    for name in dict.fromkeys(result.quantity for result in results):
+        of_it = [result for result in results if result.quantity == name]
+        for target in TARGETS:
+            best = min(of_it, key=lambda result: result.time_to(target))
+            seconds = best.time_to(target)
+            told = "none | "
+            if seconds < math.inf:
+                told = f"{best.setting} | " + (f"{seconds:.2g} s" if seconds > 1 else "below 1 s")
+            rows.append(f"| {name} | {target:.0%} | {told} |")
+    return "\n".join(rows)
+
+
+def full_table(results: list[Result]) -> str:
+    """Every measured number."""
+    rows = [
+        "| quantity | setting | value | deviation | error after 10 s, statistical |",
+        "|---|---|---|---|---|",
+    ]
+    for one in results:
+        after = one.statistical * math.sqrt(one.seconds / 10)
+        rows.append(
+            f"| {one.quantity} | {one.setting} | {one.value:.4g} | "
+            f"{one.deviation:+.2%} +- {one.deviation_error:.2%} | {after:.2%} |"
+        )
+    return "\n".join(rows)
+
+
+def draw(results: list[Result], file: Path) -> None:
+    """A panel a quantity: error against run time of each setting, and the front."""
+    names = list(dict.fromkeys(result.quantity for result in results))
+    sheet = Figure(figsize=(16, 4 * math.ceil(len(names) / 4)), layout="constrained")
+    panels = sheet.subplots(math.ceil(len(names) / 4), 4, squeeze=False).flat
+    for name, panel in zip(names, panels, strict=False):
+        of_it = [result for result in results if result.quantity == name]
+        for result in of_it:
+            colour = COLOURS[result.setting.engine]
+            panel.loglog(SECONDS, result.error(SECONDS), color=colour, lw=0.8)
+        front = np.min([result.error(SECONDS) for result in of_it], axis=0)
+        panel.loglog(SECONDS, front, color="k", lw=2.5, alpha=0.6)
+        panel.set(title=name, xlabel="processor time [s]", ylabel="error", ylim=(2e-4, 2))
+    for engine, colour in COLOURS.items():
+        sheet.axes[0].plot([], [], color=colour, label=engine)
+    sheet.axes[0].plot([], [], color="k", lw=2.5, alpha=0.6, label="front")
+    sheet.axes[0].legend(fontsize="small")
+    for panel in panels:
+        panel.set_visible(False)
+    sheet.savefig(file, dpi=110)
+
+
+def main() -> None:
+    parser = argparse.ArgumentParser(description=__doc__.partition("\n")[0] if __doc__ else None)
+    parser.add_argument("--out", type=Path, required=True, help="folder of the runs")
+    parser.add_argument("--quick", action="store_true", help=f"{QUICK_BUDGET:g} s a setting")
+    parser.add_argument("--jobs", type=int, default=available_cores())
+    options = parser.parse_args()
+    folder: Path = options.out
+    folder.mkdir(parents=True, exist_ok=True)
+    budget = QUICK_BUDGET if options.quick else BUDGET
+
+    scenes = {
+        _name(number, chosen): (study.make(chosen), chosen.engine)
+        for number, study in enumerate(STUDIES)
+        for chosen in study.all_settings
+    }
+    speeds = measure_speeds(scenes, folder / "speed.json")
+    planned = [plan(study, number, folder, speeds, budget) for number, study in enumerate(STUDIES)]
+    failures = run_all(
+        [run for of_study in planned for runs in of_study.values() for run in runs], options.jobs
+    )
+    if failures:
+        raise SystemExit("\n".join(f"{one.run.folder}: {one.message}" for one in failures))
+    results = [
+        result
+        for number, (study, of_study) in enumerate(zip(STUDIES, planned, strict=True))
+        for result in evaluate(study, number, of_study, speeds)
+    ]
+    text = f"{recommended(results)}\n\n{full_table(results)}\n"
+    print(text)
+    (folder / "pareto.md").write_text(text, encoding="utf-8")
+    draw(results, folder / "pareto.png")
+
+
+if __name__ == "__main__":
+    main()

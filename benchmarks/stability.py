@@ -1,0 +1,390 @@
+"""Where the method holds, where it is inaccurate and where it breaks, one axis at a time.
+
+    python benchmarks/stability.py --out runs/stability [--axis tau_MD ...] [--long] [--jobs 2]
+
+Every point is a run directory; the command may be stopped and given again. A point is
+
+- refused: the scene says so, before anything runs;
+- broken: stopped by an error, without a number, or off by more than `Criterion.broken`;
+- inaccurate: off by more than `Criterion.inaccurate`;
+- stable: neither.
+
+Off means beyond the limit by two standard errors. What is broken or inaccurate has to be told by
+somebody, the scene's warning, the engine's error or a note of the analysis; the exit code is 1 when
+a broken point is told by nobody. Prints the table and writes it, with the map (stability.png),
+into the folder.
+"""
+
+import argparse
+import math
+import re
+import sys
+from collections.abc import Callable, Iterable
+from dataclasses import dataclass, field, replace
+from pathlib import Path
+from typing import Any, Literal
+
+from matplotlib.figure import Figure
+
+from analysis import RunDirectoryError
+from analysis.summary import summary_of
+from lammps_inputs import SceneError, make_scene
+from lammps_inputs.deck import Engine, check_engine
+from lammps_inputs.limits import warnings
+from lammps_inputs.viscosity import viscosity
+from srd_driver import run_directory
+from srd_driver.sweep import Run, available_cores, is_finished, run_all
+
+State = Literal["refused", "broken", "inaccurate", "stable"]
+COLOURS = {"refused": "0.6", "broken": "C3", "inaccurate": "C1", "stable": "C2"}
+
+Fields = dict[str, Any]
+CHANNEL: Fields = {"duration": 300, "equilibration": 20}
+SHEAR_WAVE: Fields = {"length": 96, "width": 32, "shear_wave": 0.6}
+
+
+@dataclass(frozen=True)
+class Criterion:
+    """A ratio that is 1 when all is right, and how far off is inaccurate or broken."""
+
+    ratio: str
+    inaccurate: float
+    broken: float
+    unit: float | None = None  # what the number is compared with; None: its theory
+
+
+FLUID_TEMPERATURE = Criterion("temperature", 0.01, 0.1, 1.0)
+COLLOID_TEMPERATURE = Criterion("colloid_temperature", 0.05, 0.5, 1.0)
+VISCOSITY = Criterion("viscosity", 0.1, 0.5)
+MOBILITY = Criterion("settling_speed", 0.1, 0.5, 0.33)  # v_s / g in the linear regime
+
+
+@dataclass(frozen=True)
+class Axis:
+    """One thing that varies: the fields of each of its values."""
+
+    name: str
+    scene: str
+    values: tuple[float, ...]
+    fields: Callable[[float], Fields]
+    criterion: Criterion
+    engine: Engine = "mpc"
+
+
+@dataclass
+class Point:
+    """A value of an axis and what became of it."""
+
+    axis: Axis
+    value: float
+    run: Run | None = None
+    state: State = "stable"
+    ratio: float | None = None
+    error: float = 0.0
+    told: list[str] = field(default_factory=list)
+
+
+def shear_wave(collision_time: float = 0.1, density: float = 10, angle: float = 90) -> Fields:
+    """A decaying wave, sampled and followed according to kinetic theory's decay time."""
+    theory = viscosity(density, collision_time, min(angle, 179.9))
+    decay_time = 1 / (theory * (2 * math.pi / SHEAR_WAVE["width"]) ** 2)
+    return SHEAR_WAVE | {
+        "collision_time": collision_time,
+        "density": density,
+        "angle": angle,
+        "sampling_interval": max(2 * collision_time, 0.05 * decay_time),
+        "duration": max(60 * collision_time, 3 * decay_time),
+    }
+
+
+def time_step(value: float, duration: float = 400) -> Fields:
+    """tau_MD at a collision time of 0.06, or one step a collision where it is longer."""
+    collision_time = max(0.06, value)
+    return {
+        "collision_time": collision_time,
+        "md_steps_per_collision": round(collision_time / value),
+        "colloids": 5,
+        "gravity": 0.0,
+        "duration": duration,
+        "equilibration": duration / 10,
+    }
+
+
+def slit(value: float) -> Fields:
+    """A slit of that width; where it must be, the walls are nearer than the usual 2 a0."""
+    return CHANNEL | {"width": value, "wall_sigma": min(2.0, value / 2), "gravity": 0.0}
+
+
+def channel_collision_time(value: float) -> Fields:
+    steps = min(1000, round(value / 0.001))
+    return CHANNEL | {
+        "collision_time": value,
+        "md_steps_per_collision": steps,
+        "gravity": 0.0,
+        "sampling_interval": max(0.75, 2 * value),
+    }
+
+
+AXES = (
+    Axis(
+        "tau_MD",
+        "channel",
+        (0.001, 0.004, 0.01, 0.02, 0.03, 0.06, 0.075, 0.1, 0.2),
+        time_step,
+        COLLOID_TEMPERATURE,
+    ),
+    Axis(
+        "tau_MD (reference)",
+        "channel",
+        (0.02, 0.06, 0.2),
+        lambda value: time_step(value, duration=50),
+        COLLOID_TEMPERATURE,
+        "reference",
+    ),
+    Axis(
+        "gravity",
+        "channel",
+        (0.1, 0.2, 0.3, 0.5, 1, 2, 3, 10, 100, 1e4),
+        lambda value: CHANNEL | {"gravity": value},
+        replace(MOBILITY, ratio="settling_speed / g"),
+    ),
+    Axis(
+        "density, colloids",
+        "channel",
+        (0.1, 0.3, 1, 2, 3, 5, 10, 20, 50, 100, 200),
+        lambda value: CHANNEL | {"density": value, "duration": min(300, 3000 / value)},
+        COLLOID_TEMPERATURE,
+    ),
+    Axis(
+        "density, fluid",
+        "bulk",
+        (0.1, 0.3, 0.5, 1, 2, 3, 5, 10, 20, 50, 100, 200),
+        lambda value: shear_wave(density=value),
+        VISCOSITY,
+    ),
+    Axis(
+        "angle",
+        "bulk",
+        (1, 3, 10, 30, 60, 90, 120, 150, 170, 177, 179, 180),
+        lambda value: shear_wave(angle=value),
+        VISCOSITY,
+    ),
+    Axis(
+        "collision time, fluid",
+        "bulk",
+        (0.001, 0.003, 0.01, 0.03, 0.1, 0.3, 1, 2, 3, 10),
+        lambda value: shear_wave(collision_time=value),
+        VISCOSITY,
+    ),
+    Axis(
+        "collision time, colloids",
+        "channel",
+        (0.001, 0.003, 0.015, 0.05, 0.1, 0.3, 1, 3, 10),
+        channel_collision_time,
+        COLLOID_TEMPERATURE,
+    ),
+    Axis(
+        "colloid radius",
+        "channel",
+        (0.05, 0.1, 0.2, 0.3, 0.5, 1, 2, 3, 4, 4.9),
+        lambda value: (
+            CHANNEL
+            | {"colloid_radius": value, "gravity": 0.0, "duration": 2000 if value > 3 else 300}
+        ),
+        COLLOID_TEMPERATURE,
+    ),
+    Axis(
+        "wall strength",
+        "channel",
+        (0, 1e-8, 1e-6, 1e-4, 1e-2, 1, 1e2, 1e4, 1e6, 1e8),
+        lambda value: CHANNEL | {"wall_strength": value, "width": 5},
+        COLLOID_TEMPERATURE,
+    ),
+    Axis(
+        "colloids in 40 x 10",
+        "channel",
+        (1, 3, 5, 7, 8, 9, 10, 11),
+        lambda value: CHANNEL | {"colloids": int(value)},
+        COLLOID_TEMPERATURE,
+    ),
+    Axis(
+        "width",
+        "channel",
+        (4.0, 4.001, 4.01, 4.05, 4.1, 4.3, 4.5, 5, 6, 8, 10),
+        slit,
+        COLLOID_TEMPERATURE,
+    ),
+)
+LONG = (
+    Axis(
+        "MD steps",
+        "channel",
+        (1e5, 1e6, 1e7),
+        lambda value: {"duration": value * 0.001 - 20, "equilibration": 20},
+        COLLOID_TEMPERATURE,
+    ),
+    Axis(
+        "MD steps, no thermostat",
+        "channel",
+        (1e5, 1e6, 1e7),
+        lambda value: {
+            "duration": value * 0.001 - 20,
+            "equilibration": 20,
+            "thermostat": "none",
+        },
+        FLUID_TEMPERATURE,
+    ),
+)
+
+
+def points(folder: Path, axes: Iterable[Axis]) -> list[Point]:
+    """All points; those that the scene refuses have no run."""
+    found = []
+    for axis in axes:
+        for value in axis.values:
+            point = Point(axis, value)
+            name = f"{axis.name}={value:g}".replace(" ", "_").replace(",", "")
+            try:
+                scene = make_scene(axis.scene, **axis.fields(value))
+                check_engine(scene, axis.engine)
+            except SceneError as error:
+                point.state = "refused"
+                point.told.append(f"refused: {error}")
+            else:
+                point.run = Run(folder / name, scene, axis.engine)
+                point.told += [f"warned: {warning}" for warning in warnings(scene, axis.engine)]
+            found.append(point)
+    return found
+
+
+def execute(todo: list[Point], jobs: int) -> None:
+    """Run what is neither finished nor known to fail, and judge all points."""
+    runs = [point.run for point in todo if point.run and not _is_over(point.run)]
+    failures = {failure.run.folder: failure.message for failure in run_all(runs, jobs)}
+    for point in todo:
+        if point.run:
+            judge(point, failures.get(point.run.folder))
+
+
+def _is_over(run: Run) -> bool:
+    if not run_directory.is_begun(run.folder):
+        return False
+    return is_finished(run) or run_directory.read_failure(run.folder) is not None
+
+
+def judge(point: Point, failure: str | None) -> None:
+    """The state of a point that ran, and what told it."""
+    assert point.run
+    if run_directory.is_begun(point.run.folder):
+        failure = failure or run_directory.read_failure(point.run.folder)
+    if failure:
+        point.state = "broken"
+        point.told.append(f"stopped: {_cause(failure)}")
+        return
+    try:
+        summary = summary_of(point.run.folder)
+    except RunDirectoryError as error:
+        point.state = "broken"
+        point.told.append(f"analysis: {error}")
+        return
+    point.told += [f"analysis: {warning}" for warning in summary["warnings"]]
+    criterion = point.axis.criterion
+    entry = summary[criterion.ratio.partition(" ")[0]]
+    unit = criterion.unit or entry.get("theory")
+    if criterion.ratio.endswith("/ g"):
+        assert unit
+        unit *= point.value
+    if entry["value"] is None or entry["error"] is None or not unit:
+        point.state = "broken"
+        reason = entry.get("reason", "theory has none")
+        point.told.append(f"analysis: {criterion.ratio}: {reason}")
+        return
+    point.ratio, point.error = entry["value"] / unit, entry["error"] / unit
+    off = abs(point.ratio - 1) - 2 * point.error
+    if off > criterion.broken or not math.isfinite(off):
+        point.state = "broken"
+    elif off > criterion.inaccurate:
+        point.state = "inaccurate"
+
+
+def _cause(failure: str) -> str:
+    """What the engine said, without where its files are and how to go on."""
+    text = failure.partition("; nothing written")[0].rpartition("ERROR")[2]
+    return re.sub(r" \(\S*(/|: )[^)]*\)", "", text).removeprefix(" on proc 0: ").strip()
+
+
+def map_table(judged: list[Point]) -> str:
+    """One row an axis: its values by state."""
+    states: tuple[State, ...] = ("stable", "inaccurate", "broken", "refused")
+    rows = [f"| axis | must be 1 | {' | '.join(states)} |", "|---|---|---|---|---|---|"]
+    for axis in dict.fromkeys(point.axis for point in judged):
+        cells = [
+            ", ".join(f"{p.value:g}" for p in judged if p.axis is axis and p.state == state)
+            for state in states
+        ]
+        rows.append(f"| {axis.name} | {axis.criterion.ratio} | {' | '.join(cells)} |")
+    return "\n".join(rows)
+
+
+def table(judged: list[Point]) -> str:
+    """One row a point."""
+    rows = ["| axis | value | ratio | state | told by |", "|---|---|---|---|---|"]
+    for point in judged:
+        ratio = "" if point.ratio is None else f"{point.ratio:.4g} +- {point.error:.2g}"
+        told = "; ".join(point.told).replace("\n", "; ")
+        rows.append(f"| {point.axis.name} | {point.value:g} | {ratio} | {point.state} | {told} |")
+    return "\n".join(rows)
+
+
+def draw(judged: list[Point], file: Path) -> None:
+    """A panel an axis: the ratio that should be 1, coloured by state."""
+    axes = list(dict.fromkeys(point.axis for point in judged))
+    columns = 4
+    rows = math.ceil(len(axes) / columns)
+    sheet = Figure(figsize=(4 * columns, 3 * rows), layout="constrained")
+    panels = sheet.subplots(rows, columns, squeeze=False).flat
+    for axis, panel in zip(axes, panels, strict=False):
+        low, high = 0.5, 1.5
+        for place, point in enumerate(point for point in judged if point.axis is axis):
+            colour = COLOURS[point.state]
+            if point.ratio is None:
+                panel.plot(place, high, "x", color=colour)
+            else:
+                shown = min(max(point.ratio, low), high)
+                panel.errorbar(place, shown, point.error, fmt="o", color=colour)
+        panel.axhspan(1 - axis.criterion.inaccurate, 1 + axis.criterion.inaccurate, color="0.92")
+        labels = [f"{value:g}" for value in axis.values]
+        panel.set_xticks(range(len(labels)), labels, rotation=60)
+        panel.set(xlabel=axis.name, ylabel=axis.criterion.ratio, ylim=(low - 0.05, high + 0.05))
+    for panel in list(panels):
+        panel.set_visible(False)
+    for state, colour in COLOURS.items():
+        sheet.axes[0].plot([], [], "o", color=colour, label=state)
+    sheet.axes[0].legend(fontsize="small")
+    sheet.savefig(file, dpi=110)
+
+
+def main() -> int:
+    parser = argparse.ArgumentParser(description=__doc__.partition("\n")[0] if __doc__ else None)
+    parser.add_argument("--out", type=Path, required=True, help="folder of the runs")
+    parser.add_argument("--axis", nargs="*", help="only these")
+    parser.add_argument("--long", action="store_true", help="also runs of up to 1e7 MD steps")
+    parser.add_argument("--jobs", type=int, default=available_cores())
+    options = parser.parse_args()
+    axes = [*AXES, *(LONG if options.long else ())]
+    if options.axis:
+        axes = [axis for axis in axes if axis.name in options.axis]
+    judged = points(options.out, axes)
+    execute(judged, options.jobs)
+    text = f"{map_table(judged)}\n\n{table(judged)}"
+    print(text)
+    (options.out / "stability.md").write_text(text + "\n", encoding="utf-8")
+    draw(judged, options.out / "stability.png")
+    silent = [point for point in judged if point.state == "broken" and not point.told]
+    for point in silent:
+        print(f"broken without a word: {point.axis.name} = {point.value:g}", file=sys.stderr)
+    return 1 if silent else 0
+
+
+if __name__ == "__main__":
+    sys.exit(main())
