@@ -72,12 +72,15 @@ template <int D> class ShuffledSolvent : public RandomSolvent<D> {
               double particles) override
   {
     const Permutation permutation(static_cast<std::uint64_t>(particles), random);
+    std::vector<std::uint32_t> other(fluid.size());
+    for (int i = 0; i < fluid.size(); ++i)
+      other[i] = static_cast<std::uint32_t>(permutation(fluid.id[i]));
     std::vector<double> all(static_cast<std::size_t>(particles));
     for (auto &component : fluid.v) {
       std::fill(all.begin(), all.end(), 0.0);
       for (int i = 0; i < fluid.size(); ++i) all[fluid.id[i]] = component[i];
       processes.sum(all.data(), static_cast<int>(particles));
-      for (int i = 0; i < fluid.size(); ++i) component[i] = all[permutation(fluid.id[i])];
+      for (int i = 0; i < fluid.size(); ++i) component[i] = all[other[i]];
     }
   }
 };
