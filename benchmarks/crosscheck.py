@@ -1,15 +1,13 @@
-"""fix srd and the numpy reference on the same scenes, side by side: one table, one figure.
+"""fix mpc, the numpy reference and fix srd on the same scenes: one table, one figure.
 
     python benchmarks/crosscheck.py --out runs/crosscheck
 
-Runs what is missing in the folder (it can be stopped and started again), two runs at a time, then
-analyses all. Values are means over the seeds with the standard error that their scatter gives.
+Runs what is missing in the folder (it can be stopped and started again) on all cores, then analyses
+all. Values are means over the seeds with the standard error that their scatter gives.
 """
 
 import argparse
-import subprocess
 import sys
-from concurrent.futures import ThreadPoolExecutor
 from itertools import product
 from pathlib import Path
 from typing import Any
@@ -22,71 +20,106 @@ from analysis import analyze
 from analysis.flow import momentum_profile
 from analysis.run_directory import RunDirectory
 from analysis.shear_wave import wave_amplitude
+from lammps_inputs import make_scene
+from lammps_inputs.deck import Engine
+from srd_driver.sweep import Run, available_cores, run_all
 
-ENGINES = ("srd", "reference")
+ENGINES: tuple[Engine, ...] = ("mpc", "reference", "srd")
+COLORS = ("C2", "C0", "C1")
 SEEDS = (1, 2, 3, 4)
-SCENES: dict[str, list[str]] = {
-    "bulk": ["length=320", "width=40", "shear_wave=0.5", "duration=60", "sampling_interval=0.5"],
-    "poiseuille": ["duration=2000", "equilibration=300"],
-    "channel": ["colloids=1", "duration=300", "equilibration=50"],
+COLLOIDS = (1, 3, 5)  # in 40 x 10
+
+
+def few(colloids: int) -> str:
+    return f"channel, {colloids} colloid" + ("s" if colloids > 1 else "")
+
+
+SCENES: dict[str, dict[str, Any]] = {
+    "bulk": {
+        "length": 320,
+        "width": 40,
+        "shear_wave": 0.5,
+        "duration": 60,
+        "sampling_interval": 0.5,
+    },
+    "poiseuille": {"duration": 2000, "equilibration": 300},
+    **{few(n): {"colloids": n, "duration": 300, "equilibration": 50} for n in COLLOIDS},
+    "channel, chain": {
+        "length": 100,
+        "colloids": 20,
+        "spacing": 5,
+        "duration": 150,
+        "equilibration": 50,
+    },
 }
-QUANTITIES = {
+QUANTITIES: dict[str, list[str]] = {
     "bulk": ["viscosity", "temperature"],
     "poiseuille": ["viscosity", "viscosity_curvature", "wall_slip", "temperature"],
-    "channel": ["settling_speed", "settling_speed_rest", "colloid_temperature", "temperature"],
+    **{
+        few(n): ["settling_speed", "settling_speed_rest", "colloid_temperature", "temperature"]
+        for n in COLLOIDS
+    },
+    "channel, chain": ["settling_speed", "settling_speed_rest", "zigzag.amplitude_rms"],
 }
 
 
-def run(folder: Path, scene: str, engine: str, seed: int) -> None:
-    """One run, or what is missing of it."""
-    settings = [f"--set={setting}" for setting in [*SCENES[scene], f"seed={seed}"]]
-    command = ["run", scene, "--engine", engine, "--resume", "--out", str(folder), *settings]
-    subprocess.run([sys.executable, "-m", "narrows", *command], check=True, stdout=sys.stderr)
+def run_of(folder: Path, name: str, engine: Engine, seed: int) -> Run:
+    scene = make_scene(name.partition(",")[0], **SCENES[name], seed=seed)
+    return Run(
+        folder / f"{name.replace(', ', '-').replace(' ', '-')}-{engine}-{seed}", scene, engine
+    )
+
+
+def found(summary: dict[str, Any], quantity: str) -> dict[str, Any]:
+    """The entry of a summary; `zigzag.amplitude_rms` is within `zigzag`."""
+    for key in quantity.split("."):
+        summary = summary[key]
+    return summary
 
 
 def over_seeds(summaries: list[dict[str, Any]], quantity: str) -> tuple[float, float]:
     """Mean and standard error of a quantity over independent runs."""
-    values = np.array([summary[quantity]["value"] for summary in summaries])
+    values = np.array([found(summary, quantity)["value"] for summary in summaries])
     return float(values.mean()), float(values.std(ddof=1) / np.sqrt(len(values)))
 
 
 def table(summaries: dict[tuple[str, str], list[dict[str, Any]]]) -> str:
     """The comparison as Markdown."""
-    rows = ["| scene | quantity | fix srd | reference | theory |", "|---|---|---|---|---|"]
+    rows = ["| scene | quantity | fix mpc | reference | fix srd | theory |", "|---|" + "---|" * 5]
     for scene, quantities in QUANTITIES.items():
         for quantity in quantities:
             cells = []
             for engine in ENGINES:
                 value, error = over_seeds(summaries[scene, engine], quantity)
                 cells.append(f"{value:.4f} +- {error:.4f}")
-            theory = summaries[scene, ENGINES[0]][0][quantity].get("theory")
+            theory = found(summaries[scene, ENGINES[0]][0], quantity).get("theory")
             told = f"{theory:.4f}" if theory else ""
-            rows.append(f"| {scene} | {quantity} | {cells[0]} | {cells[1]} | {told} |")
+            rows.append(f"| {scene} | {quantity} | {' | '.join(cells)} | {told} |")
     return "\n".join(rows)
 
 
 def figure(folder: Path, file: Path) -> None:
-    """Shear-wave decay, Poiseuille profile and settling of both engines."""
+    """Shear-wave decay, Poiseuille profile and settling of the engines."""
     sheet = Figure(figsize=(13, 3.8), layout="constrained")
     decay, profile, settling = sheet.subplots(1, 3)
-    for engine, color in zip(ENGINES, ("C1", "C0"), strict=True):
+    for engine, color in zip(ENGINES, COLORS, strict=True):
         style: dict[str, Any] = {"color": color, "label": engine}
         wave: list[NDArray[np.float64]] = []
         velocity: list[NDArray[np.float64]] = []
         moved: list[NDArray[np.float64]] = []
         for seed in SEEDS:
-            run_ = RunDirectory(folder / f"bulk-{engine}-{seed}")
+            run_ = RunDirectory(run_of(folder, "bulk", engine, seed).folder)
             fluid = run_.fluid_profile
             wave.append(
                 wave_amplitude(fluid.y, run_.field("width"), fluid.counts, fluid.velocity_x)
             )
             times = run_.times(fluid.steps)
-            run_ = RunDirectory(folder / f"poiseuille-{engine}-{seed}")
+            run_ = RunDirectory(run_of(folder, "poiseuille", engine, seed).folder)
             fluid = run_.fluid_profile
             used = fluid.steps > run_.equilibration_steps
             flow = momentum_profile(fluid.counts[used], fluid.velocity_x[used])
             velocity.append(flow.mean(axis=0))
-            run_ = RunDirectory(folder / f"channel-{engine}-{seed}")
+            run_ = RunDirectory(run_of(folder, few(1), engine, seed).folder)
             x = run_.colloids.positions[1:, :, 0].mean(axis=1) - run_.colloids.positions[0, :, 0]
             carried = np.cumsum(run_.observables.mean_velocity_x) * run_.interval
             moved.append(x - carried)
@@ -109,18 +142,16 @@ def main() -> None:
     parser = argparse.ArgumentParser(description=__doc__.partition("\n")[0] if __doc__ else None)
     parser.add_argument("--out", type=Path, required=True, help="folder of the runs")
     folder: Path = parser.parse_args().out
-    todo = list(product(SCENES, ENGINES, SEEDS))
-    with ThreadPoolExecutor(max_workers=2) as workers:
-        runs = [
-            workers.submit(run, folder / f"{scene}-{engine}-{seed}", scene, engine, seed)
-            for scene, engine, seed in todo
-        ]
-        for finished in runs:
-            finished.result()
+    runs = {
+        (name, engine, seed): run_of(folder, name, engine, seed)
+        for name, engine, seed in product(SCENES, ENGINES, SEEDS)
+    }
+    failures = run_all(list(runs.values()), available_cores())
+    if failures:
+        sys.exit("\n".join(f"{failure.run.folder}: {failure.message}" for failure in failures))
     summaries: dict[tuple[str, str], list[dict[str, Any]]] = {}
-    for scene, engine, seed in todo:
-        summary = analyze(folder / f"{scene}-{engine}-{seed}")
-        summaries.setdefault((scene, engine), []).append(summary)
+    for (name, engine, _), run in runs.items():
+        summaries.setdefault((name, engine), []).append(analyze(run.folder))
     text = table(summaries)
     (folder / "crosscheck.md").write_text(text + "\n", encoding="utf-8")
     figure(folder, folder / "crosscheck.png")

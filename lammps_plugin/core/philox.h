@@ -56,7 +56,7 @@ template <int count> std::array<double, 4> normals(const Words &words)
   const auto u = uniforms(words);
   std::array<double, 4> z{};
   for (int pair = 0; pair < count; pair += 2) {
-    const double radius = std::sqrt(-2 * std::log(1 - u[pair]));    // 1 - u is exact
+    const double radius = std::sqrt(-2 * std::log1p(-u[pair]));
     const double angle = 2 * M_PI * u[pair + 1];
     z[pair] = radius * std::cos(angle);
     z[pair + 1] = radius * std::sin(angle);
