@@ -16,37 +16,47 @@ template <int D> class RandomSolvent {
   virtual void redraw(Fluid<D> &, const CounterRandom &, Processes &, double particles) = 0;
 };
 
-// A keyed permutation of 0 ... count - 1: a Feistel network of eight rounds on 2 h bits, h the
-// smallest with 4^h >= count; values from count on go through again.
+// A keyed permutation of 0 ... count - 1: a Feistel network of eight rounds on the pairs (number /
+// columns, number % columns), columns the smallest with columns^2 >= count. The few values from
+// count on go through again.
 class Permutation {
  public:
   Permutation(std::uint64_t count, const CounterRandom &random) : count_(count)
   {
-    while (half_ < 32 && (std::uint64_t{1} << (2 * half_)) < count) ++half_;
+    columns_ = static_cast<std::uint64_t>(std::sqrt(static_cast<double>(count)));
+    while (columns_ * columns_ < count) ++columns_;
+    rows_ = (count + columns_ - 1) / columns_;
     for (int item = 0; item < 2; ++item) {
       const auto words = random.words(Stream::Shuffle, item);
       for (int word = 0; word < 4; ++word) keys_[4 * item + word] = words[word];
     }
   }
 
-  std::uint64_t operator()(std::uint64_t number) const
+  // Of many numbers at a time: the first loop is vectorised.
+  void operator()(const std::uint32_t *numbers, std::uint32_t *images, int count) const
   {
-    do number = once(number);
-    while (number >= count_);
-    return number;
+    for (int i = 0; i < count; ++i) images[i] = once(numbers[i]);
+    for (int i = 0; i < count; ++i)
+      while (images[i] >= count_) images[i] = once(images[i]);
   }
 
  private:
-  std::uint64_t once(std::uint64_t number) const
+  std::uint32_t once(std::uint32_t number) const
   {
-    const std::uint64_t mask = (std::uint64_t{1} << half_) - 1;
-    std::uint64_t left = number >> half_, right = number & mask;
-    for (std::uint64_t key : keys_) {
-      const std::uint64_t mixed = left ^ (mix(right + key) & mask);
-      left = right;
-      right = mixed;
+    auto row = static_cast<std::uint64_t>(static_cast<double>(number) / columns_);
+    auto column = number - row * columns_;
+    for (int round = 0; round < 8; round += 2) {
+      row = moved(row, column + keys_[round], rows_);
+      column = moved(column, row + keys_[round + 1], columns_);
     }
-    return left << half_ | right;
+    return static_cast<std::uint32_t>(row * columns_ + column);
+  }
+
+  // By a pseudorandom distance, around `count` places.
+  static std::uint64_t moved(std::uint64_t place, std::uint64_t key, std::uint64_t count)
+  {
+    place += (mix(key) >> 32) * count >> 32;
+    return place < count ? place : place - count;
   }
 
   // The finaliser of SplitMix64.
@@ -57,8 +67,7 @@ class Permutation {
     return z ^ z >> 31;
   }
 
-  std::uint64_t count_;
-  int half_ = 1;
+  std::uint64_t count_, rows_, columns_;
   std::array<std::uint64_t, 8> keys_;
 };
 
@@ -73,8 +82,7 @@ template <int D> class ShuffledSolvent : public RandomSolvent<D> {
   {
     const Permutation permutation(static_cast<std::uint64_t>(particles), random);
     std::vector<std::uint32_t> other(fluid.size());
-    for (int i = 0; i < fluid.size(); ++i)
-      other[i] = static_cast<std::uint32_t>(permutation(fluid.id[i]));
+    permutation(fluid.id.data(), other.data(), fluid.size());
     std::vector<double> all(static_cast<std::size_t>(particles));
     for (auto &component : fluid.v) {
       std::fill(all.begin(), all.end(), 0.0);
@@ -94,14 +102,30 @@ template <int D> class BathSolvent : public RandomSolvent<D> {
 
   void redraw(Fluid<D> &fluid, const CounterRandom &random, Processes &, double) override
   {
-    for (int i = 0; i < fluid.size(); ++i) {
-      const auto z = normals<D>(random.words(Stream::Bath, fluid.id[i]));
-      for (int a = 0; a < D; ++a) fluid.v[a][i] = speed_ * z[a];
+    std::array<std::array<double, BLOCK>, 4> u;
+    for (int begin = 0; begin < fluid.size(); begin += BLOCK) {
+      const int count = std::min(BLOCK, fluid.size() - begin);
+      for (int i = 0; i < count; ++i) {
+        const auto words = random.words(Stream::Bath, fluid.id[begin + i]);
+        for (int word = 0; word < 4; ++word) u[word][i] = uniform(words[word]);
+      }
+      for (int a = 0; a < D; a += 2) {
+        double *first = fluid.v[a].data() + begin;
+        double *second = a + 1 < D ? fluid.v[a + 1].data() + begin : unused_.data();
+        for (int i = 0; i < count; ++i) {
+          const auto z = normal_pair(u[a][i], u[a + 1][i]);
+          first[i] = speed_ * z[0];
+          second[i] = speed_ * z[1];
+        }
+      }
     }
   }
 
  private:
+  static constexpr int BLOCK = 256;    // particles; their loops are vectorised
+
   double speed_;
+  std::array<double, BLOCK> unused_;    // the fourth normal of each block in 3D
 };
 
 }    // namespace mpc

@@ -1,5 +1,7 @@
 """Random solvents: a fluid without hydrodynamic interactions (tabatabaei-2009, 4.3)."""
 
+import math
+
 import numpy as np
 from numpy.typing import NDArray
 
@@ -21,27 +23,31 @@ def shuffle(velocities: Array, random: CounterRandom) -> None:
 def permutation(count: int, random: CounterRandom) -> NDArray[np.intp]:
     """A keyed permutation pi of 0 ... count - 1, each value computed on its own.
 
-    A Feistel network of eight rounds on 2 h bits, h the smallest with 2^(2 h) >= count: of the
-    number split into left (upper h bits) and right, round k makes (right, left xor f_k(right)).
-    Values from count on are sent through the network again until they fall below it. The key of
-    round k is word k of stream SHUFFLE: items 0 and 1, four words each.
+    A Feistel network of eight rounds on a table of `count` places or a few more: it has c columns,
+    c the smallest with c^2 >= count, and r = ceil(count / c) rows. Even rounds move the row around
+    by floor(f r / 2^32), f the upper 32 bits of mix(column + key_k); odd rounds move the column in
+    the same way by what the row says. A value from count on is sent through the network again. The
+    key of round k is word k of stream SHUFFLE: items 0 and 1, four words each.
     """
-    half = np.uint64(max(1, ((count - 1).bit_length() + 1) // 2))
+    columns = math.isqrt(count - 1) + 1
+    sizes = np.array([-(-count // columns), columns], dtype=np.uint64)
     keys = random.words(Stream.SHUFFLE, ROUNDS // 4).T.ravel()
-    image = _feistel(np.arange(count, dtype=np.uint64), half, keys)
+    image = _feistel(np.arange(count, dtype=np.uint64), sizes, keys)
     beyond = np.flatnonzero(image >= count)
     while beyond.size:
-        image[beyond] = _feistel(image[beyond], half, keys)
+        image[beyond] = _feistel(image[beyond], sizes, keys)
         beyond = beyond[image[beyond] >= count]
     return image.astype(np.intp)
 
 
-def _feistel(numbers: Words, half: np.uint64, keys: Words) -> Words:
-    mask = (np.uint64(1) << half) - np.uint64(1)
-    left, right = numbers >> half, numbers & mask
-    for key in keys:
-        left, right = right, left ^ (_mix(right + key) & mask)
-    return (left << half) | right
+def _feistel(numbers: Words, sizes: Words, keys: Words) -> Words:
+    place = list(np.divmod(numbers, sizes[1]))
+    for k, key in enumerate(keys):
+        half = k % 2
+        distance = (_mix(place[1 - half] + key) >> np.uint64(32)) * sizes[half] >> np.uint64(32)
+        place[half] = (place[half] + distance) % sizes[half]
+    image: Words = place[0] * sizes[1] + place[1]
+    return image
 
 
 def _mix(z: Words) -> Words:

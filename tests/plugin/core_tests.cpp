@@ -6,7 +6,10 @@
 #include "profile.h"
 #include "solver.h"
 
+#include <algorithm>
+#include <cfloat>
 #include <cstdio>
+#include <numeric>
 #include <utility>
 
 using namespace mpc;
@@ -181,11 +184,31 @@ void a_particle_that_meets_the_walls_too_often_is_named()
 void the_permutation_is_one()
 {
   for (int count : {1, 2, 5, 16, 17, 1000}) {
-    const Permutation permutation(count, CounterRandom{9, 4});
-    std::vector<int> images(count);
-    for (int i = 0; i < count; ++i) ++images[permutation(i)];
-    for (int times : images) CHECK(times == 1);
+    std::vector<std::uint32_t> numbers(count), images(count);
+    std::iota(numbers.begin(), numbers.end(), 0);
+    Permutation(count, CounterRandom{9, 4})(numbers.data(), images.data(), count);
+    CHECK(std::is_permutation(images.begin(), images.end(), numbers.begin()));
   }
+}
+
+void logarithm_cosine_and_sine_are_those_of_the_c_library()
+{
+  constexpr long double pi = 3.14159265358979323846264338328L;
+  const auto agree = [](double value, long double exact) {
+    return std::abs(value - exact) <= 4 * DBL_EPSILON * std::abs(exact) + 1e-18L;
+  };
+  const auto check_at = [&](double u) {
+    const auto [cosine, sine] = cosine_and_sine_of_turn(u);
+    CHECK(agree(logarithm(1 - u), std::log1p(-static_cast<long double>(u))));
+    CHECK(agree(cosine, std::cos(2 * pi * u)));
+    CHECK(agree(sine, std::sin(2 * pi * u)));
+  };
+  for (int eighth = 0; eighth < 8; ++eighth)
+    for (double beside : {-0x1p-53, 0.0, 0x1p-53})
+      if (eighth + beside >= 0) check_at(0.125 * eighth + beside);
+  check_at(1 - 0x1p-53);
+  for (int i = 0; i < 1000000; ++i)
+    check_at(uniform(CounterRandom{3, 0}.words(Stream::Bath, i)[0]));
 }
 
 // A fluid of 1000 particles, deterministic.
@@ -589,6 +612,7 @@ int main()
   a_lost_particle_is_named();
   a_particle_that_meets_the_walls_too_often_is_named();
   the_permutation_is_one();
+  logarithm_cosine_and_sine_are_those_of_the_c_library();
   momentum_and_energy_are_kept();
   thermostats_reach_their_temperature();
   virtual_particles_have_the_right_variance();

@@ -1,5 +1,7 @@
 """Random solvents: the permutation, what each conserves, and that local momentum is lost."""
 
+import math
+
 import numpy as np
 import pytest
 from hypothesis import given, settings
@@ -14,21 +16,26 @@ from srd_driver.reference.counter_random import CounterRandom, Stream
 MASK = 2**64 - 1
 
 
+def mix(z: int) -> int:
+    z = ((z ^ (z >> 30)) * 0xBF58476D1CE4E5B9) & MASK
+    z = ((z ^ (z >> 27)) * 0x94D049BB133111EB) & MASK
+    return z ^ (z >> 31)
+
+
 def feistel_in_plain_python(index: int, count: int, seed: int, step: int) -> int:
     """docs/reference.md, word by word, for one particle."""
-    half = 1
-    while 4**half < count:
-        half += 1
+    columns = next(c for c in range(1, count + 1) if c**2 >= count)
+    rows = math.ceil(count / columns)
     words = CounterRandom(seed, step).words(Stream.SHUFFLE, 2)
     keys = [int(words[k % 4, k // 4]) for k in range(8)]
     while True:
-        left, right = index >> half, index & (2**half - 1)
-        for key in keys:
-            z = (right + key) & MASK
-            z = ((z ^ (z >> 30)) * 0xBF58476D1CE4E5B9) & MASK
-            z = ((z ^ (z >> 27)) * 0x94D049BB133111EB) & MASK
-            left, right = right, left ^ ((z ^ (z >> 31)) & (2**half - 1))
-        index = (left << half) | right
+        row, column = index // columns, index % columns
+        for k in range(0, 8, 2):
+            f = mix((column + keys[k]) & MASK) >> 32
+            row = (row + f * rows // 2**32) % rows
+            f = mix((row + keys[k + 1]) & MASK) >> 32
+            column = (column + f * columns // 2**32) % columns
+        index = row * columns + column
         if index < count:
             return index
 
