@@ -9,7 +9,7 @@ from srd_driver import run_directory
 from srd_driver.run_lock import is_locked
 from srd_driver.sweep import Run, is_finished
 
-State = Literal["finished", "running", "failed", "waiting"]
+State = Literal["finished", "running", "failed", "stopped", "waiting"]
 
 
 @dataclass(frozen=True)
@@ -17,7 +17,7 @@ class Status:
     """How far a run is.
 
     Attributes:
-        state: waiting: not begun, or stopped half way without an error.
+        state: stopped: half way, without an error (killed, or interrupted); waiting: not begun.
         time: simulated so far, equilibration included [t0]; of a run that does not run now, up to
             its newest checkpoint.
         end: at which the run is finished [t0].
@@ -52,7 +52,7 @@ def status_of(run: Run) -> Status:
         return Status("finished", progress.step * step, end, speed, None)
     if locked:
         return Status("running", run_directory.newest_step(run.folder) * step, end, speed, None)
-    state: State = "waiting" if failure is None else "failed"
+    state: State = "stopped" if failure is None else "failed"
     return Status(state, progress.step * step, end, speed, failure)
 
 

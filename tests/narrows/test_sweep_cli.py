@@ -152,7 +152,7 @@ def test_an_interrupt_leaves_checkpoints(
         with pytest.raises(ProcessLookupError):
             os.kill(child, 0)
     told = command("narrows", "status", out).stdout.splitlines()
-    assert [line.split()[1] for line in told[:3]] == ["waiting"] * 3
+    assert [line.split()[1] for line in told[:3]] == ["stopped", "stopped", "waiting"]
     for name in ("seed=1", "seed=2"):
         reached = json.loads((out / name / "progress.json").read_text())["step"]
         assert reached >= list(frames(out / name / "trajectory.lammpsdump"))[-1]

@@ -219,7 +219,7 @@ def test_status_tells_all_states(tmp_path: Path) -> None:
             simulation.run(0.3 if name != "finished" else 0.6)
     write_failure(tmp_path / "failed", "no room")
     half, failed = status_of(runs["half"]), status_of(runs["failed"])
-    assert (half.state, half.time, half.failure) == ("waiting", pytest.approx(0.3), None)
+    assert (half.state, half.time, half.failure) == ("stopped", pytest.approx(0.3), None)
     assert (failed.state, failed.failure) == ("failed", "no room")
     finished = status_of(runs["finished"])
     assert (finished.state, finished.time) == ("finished", pytest.approx(0.6))
@@ -227,7 +227,7 @@ def test_status_tells_all_states(tmp_path: Path) -> None:
     assert finished.speed > 0
     assert status_of(stored_run(tmp_path / "finished")) == finished
     longer = Run(tmp_path / "finished", tiny(duration=1.2), "reference")
-    assert status_of(longer).state == "waiting"
+    assert status_of(longer).state == "stopped"
     with Simulation(tiny(), "reference", tmp_path / "running") as simulation:
         assert status_of(runs["running"]).state == "running"
         session = simulation._session
