@@ -245,14 +245,9 @@ class RunDirectory:
             RunDirectoryError: when it is missing, malformed, empty or has gaps.
         """
         name = "observables.dat"
-        header, numbers = self._read_table(name)
-        columns = next((line[1:].split() for line in header if "TimeStep" in line), [])
         wanted = ["TimeStep", "v_fluid_temperature", "v_mean_velocity_x"]
-        for column in wanted:
-            if column not in columns:
-                raise RunDirectoryError(f"{self.path / name}: no column {column}")
-        rows = self._reshape(name, numbers, len(columns))
-        table = rows[:, [columns.index(column) for column in wanted]]
+        columns, count, numbers = self._read_table(name, "TimeStep", wanted)
+        table = self._reshape(name, numbers, count)[:, columns]
         steps = self._check_steps(name, table[:, 0], first=self.manifest["sample_steps"])
         return Observables(steps, table[:, 1], table[:, 2])
 
@@ -264,19 +259,16 @@ class RunDirectory:
             RunDirectoryError: when it is missing, malformed, empty or has gaps.
         """
         name = "fluid_profile.dat"
-        header, numbers = self._read_table(name)
-        columns = next((line[1:].split() for line in header if "Chunk Coord1" in line), [])
-        for column in ("Coord1", "Ncount", "vx"):
-            if column not in columns:
-                raise RunDirectoryError(f"{self.path / name}: no column {column}")
+        wanted = ["Coord1", "Ncount", "vx"]
+        columns, count, numbers = self._read_table(name, "Chunk Coord1", wanted)
         if len(numbers) < 3:
             raise RunDirectoryError(f"{self.path / name}: no complete sampling interval yet")
         bins = int(numbers[1])  # each interval: step, number of bins, particles; then the bins
-        rows = self._reshape(name, numbers, 3 + bins * len(columns))
+        rows = self._reshape(name, numbers, 3 + bins * count)
         if bins < 2 or np.any(rows[:, 1] != bins):
             raise RunDirectoryError(f"{self.path / name}: the number of bins is not constant")
-        table = rows[:, 3:].reshape(len(rows), bins, len(columns))
-        y, counts, velocity = (table[:, :, columns.index(c)] for c in ("Coord1", "Ncount", "vx"))
+        table = rows[:, 3:].reshape(len(rows), bins, count)
+        y, counts, velocity = (table[:, :, column] for column in columns)
         steps = self._check_steps(name, rows[:, 0], first=self.manifest["sample_steps"])
         return FluidProfile(steps, y[0], counts, velocity)
 
@@ -339,15 +331,25 @@ class RunDirectory:
         if not (self.path / name).is_file():
             raise RunDirectoryError(f"{self.path / name}: missing")
 
-    def _read_table(self, name: str) -> tuple[list[str], Array]:
-        """Comment lines, and all numbers of the other complete lines of a LAMMPS output file."""
+    def _read_table(
+        self, name: str, mark: str, wanted: Sequence[str]
+    ) -> tuple[list[int], int, Array]:
+        """Where the wanted columns of a LAMMPS output file are, of how many, and all its numbers.
+
+        The comment line that holds `mark` names the columns. A last line that is cut short is left
+        out.
+        """
         self._require_file(name)
         try:
             text = (self.path / name).read_text(encoding="utf-8")
         except (OSError, UnicodeDecodeError) as error:
             raise RunDirectoryError(f"{self.path / name}: {error}") from None
         lines = text[: text.rfind("\n") + 1].splitlines()
-        comments = [line for line in lines if line.startswith("#")]
+        comments = [line[1:] for line in lines if line.startswith("#")]
+        names = next((line.split() for line in comments if mark in line), [])
+        for column in wanted:
+            if column not in names:
+                raise RunDirectoryError(f"{self.path / name}: no column {column}")
         data = "\n".join(line for line in lines if not line.startswith("#"))
         with warnings.catch_warnings():
             warnings.simplefilter("error", DeprecationWarning)
@@ -357,7 +359,7 @@ class RunDirectory:
                 raise RunDirectoryError(f"{self.path / name}: holds text among numbers") from None
         if not np.all(np.isfinite(numbers)):
             raise RunDirectoryError(f"{self.path / name}: holds numbers that are not finite")
-        return comments, numbers
+        return [names.index(column) for column in wanted], len(names), numbers
 
     def _reshape(self, name: str, numbers: Array, columns: int) -> Array:
         """Complete rows of a table of so many columns; a last, incomplete one is dropped."""
