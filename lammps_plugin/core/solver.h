@@ -10,9 +10,11 @@
 #pragma once
 
 #include "coupling.h"
+#include "migration.h"
 #include "random_solvent.h"
 #include "streaming.h"
 #include "thermostat.h"
+#include "tile_order.h"
 
 #include <memory>
 
@@ -116,7 +118,7 @@ template <int D> class Solver {
 
   void begin_interval(const std::vector<Colloid<D>> &colloids, double colloid_speed)
   {
-    if (collisions_ % SORT_INTERVAL == 0) sort_by_tile();
+    if (collisions_ % SORT_INTERVAL == 0) tiles_.sort(fluid_, grid_);
     auto *coupling = method_.coupling.get();
     if (coupling) coupling->begin(grid_, colloids, colloid_speed);
     draw_shift(collisions_);
@@ -160,14 +162,13 @@ template <int D> class Solver {
   double memory() const
   {
     return fluid_.bytes() + sums_.capacity() * (1.0 * sizeof(CellSum<D>) + sizeof(Turn<D>)) +
-        order_.capacity() * 1.0 * sizeof(int) + sorted_.capacity() * 1.0 * sizeof(double);
+        tiles_.bytes();
   }
 
  private:
   static constexpr int BLOCK = 512;           // particles; their state fits the first-level cache
   static constexpr int AHEAD = 32;            // particles
   static constexpr int SORT_INTERVAL = 64;    // collisions, in which a particle moves a few cells
-  static constexpr int TILE = D == 2 ? 8 : 4;    // cells along each edge; they share a cache
   static constexpr int STRAY = -1, TAKEN = -2;    // instead of a cell
 
   void set_cells(const std::array<int, D> &lower, const std::array<int, D> &upper)
@@ -321,50 +322,14 @@ template <int D> class Solver {
     return grid_.local(x);
   }
 
-  // Bring the travelling particles home, axis by axis, neighbour to neighbour.
   void migrate()
   {
-    constexpr int record = sizeof(Particle<D>) / sizeof(double);
-    for (int a = 0; a < D; ++a) {
-      bool more = processes_.along(a) > 1;
-      while (more) {
-        std::vector<double> down, up;
-        std::vector<Particle<D>> staying;
-        for (const auto &particle : travelling_) {
-          const int row = grid_.row(a, particle.x[a]);
-          if (grid_.owns(a, row)) {
-            staying.push_back(particle);
-            continue;
-          }
-          auto &side = is_below(a, row) ? down : up;
-          const auto *values = reinterpret_cast<const double *>(&particle);
-          side.insert(side.end(), values, values + record);
-        }
-        travelling_ = std::move(staying);
-        const auto arrived = processes_.trade(a, down, up);
-        bool homeless = false;
-        for (std::size_t k = 0; k < arrived.size(); k += record) {
-          travelling_.push_back(*reinterpret_cast<const Particle<D> *>(&arrived[k]));
-          homeless |= !grid_.owns(a, grid_.row(a, travelling_.back().x[a]));
-        }
-        more = processes_.along(a) > 2 && processes_.any(homeless);
-      }
-    }
+    bring_home<D>(travelling_, grid_, processes_);
     for (const auto &particle : travelling_) {
       fluid_.append(particle, grid_.local(particle.x));
       add_to(sums_[fluid_.cell.back()], fluid_.size() - 1);
     }
     travelling_.clear();
-  }
-
-  // Whether the shorter way to a row is through the lower neighbour.
-  bool is_below(int axis, int row) const
-  {
-    if (!grid_.periodic[axis]) return row < grid_.lower[axis];
-    const int rows = grid_.shape[axis];
-    const int down = (grid_.lower[axis] - row + rows) % rows;
-    const int up = (row - grid_.upper[axis] + 1 + rows) % rows;
-    return down < up;
   }
 
   void collide(const std::vector<Colloid<D>> &colloids)
@@ -409,49 +374,6 @@ template <int D> class Solver {
     });
   }
 
-  // Particles that share cells come to lie near each other, so that the cost of a collision does
-  // not depend on the size of the fluid; within a tile their order stays mixed, which keeps sums
-  // into one cell from waiting for each other.
-  void sort_by_tile()
-  {
-    std::array<int, D> tiles;
-    int count = 1;
-    for (int a = 0; a < D; ++a) {
-      tiles[a] = (grid_.extent(a) + TILE - 1) / TILE;
-      count *= tiles[a];
-    }
-    if (count == 1) return;
-    const auto tile_of = [&](int cell) {
-      int tile = 0;
-      const auto rows = grid_.rows(cell);
-      for (int a = D - 1; a >= 0; --a)
-        tile = tile * tiles[a] + (rows[a] - grid_.lower[a]) / TILE;
-      return tile;
-    };
-    std::vector<int> tile(grid_.cells());
-    for (int cell = 0; cell < grid_.cells(); ++cell) tile[cell] = tile_of(cell);
-    std::vector<int> next(count + 1);
-    for (int cell : fluid_.cell) ++next[tile[cell] + 1];
-    for (int t = 0; t < count; ++t) next[t + 1] += next[t];
-    order_.resize(fluid_.size());
-    for (int i = 0; i < fluid_.size(); ++i) order_[i] = next[tile[fluid_.cell[i]]]++;
-    for (int a = 0; a < D; ++a) {
-      reorder(fluid_.x[a], sorted_);
-      reorder(fluid_.v[a], sorted_);
-    }
-    Array<std::uint32_t> ids;
-    reorder(fluid_.id, ids);
-    Array<std::int32_t> cells;
-    reorder(fluid_.cell, cells);
-  }
-
-  template <class T> void reorder(Array<T> &values, Array<T> &sorted)
-  {
-    sorted.resize(values.size());
-    for (std::size_t i = 0; i < values.size(); ++i) sorted[order_[i]] = values[i];
-    std::swap(values, sorted);
-  }
-
   Grid<D> grid_;
   Method<D> method_;
   Processes &processes_;
@@ -463,8 +385,7 @@ template <int D> class Solver {
   bool turning_ = false;             // whether they are still to be applied
   std::vector<int> strays_;          // indices of particles in no cell of this process
   std::vector<Particle<D>> travelling_;
-  std::vector<int> order_;           // buffers of sort_by_tile
-  Array<double> sorted_;
+  TileOrder<D> tiles_;
 };
 
 }    // namespace mpc

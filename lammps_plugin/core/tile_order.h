@@ -1,0 +1,66 @@
+// The order of the particles in memory.
+
+#pragma once
+
+#include "fluid.h"
+
+namespace mpc {
+
+// Particles that share cells come to lie near each other, so that the cost of a collision does not
+// depend on the size of the fluid; within a tile their order stays mixed, which keeps sums into one
+// cell from waiting for each other.
+template <int D> class TileOrder {
+ public:
+  void sort(Fluid<D> &fluid, const Grid<D> &grid)
+  {
+    std::array<int, D> tiles;
+    int count = 1;
+    for (int a = 0; a < D; ++a) {
+      tiles[a] = (grid.extent(a) + TILE - 1) / TILE;
+      count *= tiles[a];
+    }
+    if (count == 1) return;
+    const auto tile_of = [&](int cell) {
+      int tile = 0;
+      const auto rows = grid.rows(cell);
+      for (int a = D - 1; a >= 0; --a)
+        tile = tile * tiles[a] + (rows[a] - grid.lower[a]) / TILE;
+      return tile;
+    };
+    std::vector<int> tile(grid.cells());
+    for (int cell = 0; cell < grid.cells(); ++cell) tile[cell] = tile_of(cell);
+    std::vector<int> next(count + 1);
+    for (int cell : fluid.cell) ++next[tile[cell] + 1];
+    for (int t = 0; t < count; ++t) next[t + 1] += next[t];
+    order_.resize(fluid.size());
+    for (int i = 0; i < fluid.size(); ++i) order_[i] = next[tile[fluid.cell[i]]]++;
+    for (int a = 0; a < D; ++a) {
+      reorder(fluid.x[a], sorted_);
+      reorder(fluid.v[a], sorted_);
+    }
+    Array<std::uint32_t> ids;
+    reorder(fluid.id, ids);
+    Array<std::int32_t> cells;
+    reorder(fluid.cell, cells);
+  }
+
+  double bytes() const
+  {
+    return order_.capacity() * 1.0 * sizeof(int) + sorted_.capacity() * 1.0 * sizeof(double);
+  }
+
+ private:
+  static constexpr int TILE = D == 2 ? 8 : 4;    // cells along each edge; they share a cache
+
+  template <class T> void reorder(Array<T> &values, Array<T> &sorted)
+  {
+    sorted.resize(values.size());
+    for (std::size_t i = 0; i < values.size(); ++i) sorted[order_[i]] = values[i];
+    std::swap(values, sorted);
+  }
+
+  std::vector<int> order_;
+  Array<double> sorted_;
+};
+
+}    // namespace mpc
