@@ -41,9 +41,9 @@ from narrows.reproduce.tabatabaei_2009.volume_fraction import (
 def few_colloids(number: int, quality: Quality) -> list[Point]:
     """One, two or three colloids in channels of many lengths: Figs. 4.3 to 4.5 and 4.8."""
     seeds: dict[int, dict[int, int]] = {
-        1: {40: 16, 60: 12, 80: 10, 100: 10, 150: 6, 200: 5, 300: 4, 500: 3, 1000: 2},
-        2: {100: 6, 150: 5, 200: 4, 300: 3, 500: 2, 1000: 2},
-        3: {100: 5, 150: 4, 250: 3, 400: 2, 600: 2, 1000: 1},
+        1: {40: 24, 60: 20, 80: 18, 100: 18, 150: 12, 200: 9, 300: 8, 500: 5, 1000: 4},
+        2: {100: 24, 150: 16, 200: 12, 300: 8, 500: 5, 1000: 4},
+        3: {100: 16, 150: 12, 250: 8, 400: 5, 600: 4, 1000: 3},
     }
     quick: dict[int, dict[int, int]] = {
         1: {40: 4, 80: 2, 150: 1, 300: 1},
@@ -56,11 +56,11 @@ def few_colloids(number: int, quality: Quality) -> list[Point]:
 
 def without_interactions(solvent: Hydrodynamics, quality: Quality) -> list[Point]:
     """Two colloids in a random solvent, Fig. 4.8."""
-    durations = {100: 600.0, 200: 400.0, 500: 200.0, 1000: 120.0}
+    durations, seeds = {100: 600.0, 200: 400.0, 500: 200.0, 1000: 120.0}, 4
     if quality == "quick":
-        durations = {100: 150.0, 300: 75.0}
+        durations, seeds = {100: 150.0, 300: 75.0}, 1
     return [
-        point(length, 2, 1, time, hydrodynamics=solvent, equilibration=25.0)
+        point(length, 2, seeds, time, hydrodynamics=solvent, equilibration=25.0)
         for length, time in durations.items()
     ]
 

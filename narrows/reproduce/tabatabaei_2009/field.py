@@ -37,7 +37,7 @@ def _gravities(quality: Quality) -> list[float]:
 
 def field_points(wall_sigma: float, quality: Quality) -> list[Point]:
     """One point for each gravity."""
-    seeds = 4 if quality == "full" else 2
+    seeds = 8 if quality == "full" else 2
     first_seed = 1 if wall_sigma == WIDE else 101  # else the same until a colloid meets a wall
     return [
         point(40, 3, seeds, first_seed=first_seed, gravity=gravity, wall_sigma=wall_sigma)

@@ -43,7 +43,7 @@ FITTED_FROM = 0.02  # phi from which the line is fitted: "beyond small volume fr
 def many_colloids(length: int, quality: Quality) -> list[Point]:
     """Channels of one length with ever more colloids: Figs. 4.6, 4.7 and 5.1."""
     full = {
-        1000: [(5, 1, 1000.0), (10, 1, 1000.0)]
+        1000: [(5, 2, 1000.0), (10, 2, 1000.0)]
         + [(number, 1, 500.0) for number in (20, 40, 60, 80, 100)],
         600: [(6, 1, 1000.0)] + [(number, 1, 500.0) for number in (12, 24, 36, 48, 60)],
         260: [(number, 1, 1000.0) for number in (2, 4, 8, 13, 18, 22, 26)],
