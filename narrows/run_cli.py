@@ -93,14 +93,7 @@ def run(
 
 @contextmanager
 def _stopped_by_signals(simulation: Simulation) -> Iterator[None]:
-    """Ctrl-C, or a queueing system's SIGTERM: a checkpoint, then the end; a second one: at once.
-
-    Not under mpirun, which ends its processes itself.
-    """
-    if communicator().size > 1:
-        yield
-        return
-
+    """Ctrl-C, or a queueing system's SIGTERM: a checkpoint, then the end; a second one: at once."""
     def stop(number: int, _: FrameType | None) -> None:
         signal.signal(number, before[number])
         simulation.stop()

@@ -73,7 +73,7 @@ def sweep(
 def status(
     directory: Annotated[Path, typer.Argument(metavar="DIR", help="of a sweep or a run")],
 ) -> None:
-    """Which runs are finished, running, failed, stopped or waiting, how far each is, and its speed."""
+    """Whether each run is finished, running, failed, stopped or waiting; how far, and how fast."""
     with user_errors():
         if sweep_definition.is_sweep(directory):
             runs = sweep_definition.read(directory).runs

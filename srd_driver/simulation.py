@@ -176,7 +176,8 @@ class Simulation:
     def stop(self) -> None:
         """Let the `run` or `finish` under way, or the next, return soon, a checkpoint written.
 
-        Soon is at the next report. A signal handler may call this; under mpirun all processes must.
+        Soon is at the next report. A signal handler may call this; of the processes under mpirun
+        one is enough.
         """
         self._stop_asked = True
 
@@ -228,7 +229,7 @@ class Simulation:
                 session.advance(steps)
             pace = PIECE_SECONDS * steps / sample / (clock.perf_counter() - began)
             self._piece = self._comm.bcast(max(1, int(pace)), root=0)
-            stopped = self._comm.bcast(self._stop_asked, root=0)
+            stopped = any(self._comm.allgather(self._stop_asked))
             if stopped or self.step in (next_checkpoint, end):
                 self.checkpoint()
             if report:

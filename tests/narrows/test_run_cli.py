@@ -11,7 +11,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from tests.conftest import ROOT, Run
+from tests.conftest import COMMANDS, ROOT, Run
 from tests.lammps_inputs.test_decks import frames
 
 SHORT = ["--set", "duration=1.2", "--set", "equilibration=0", "--set", "sampling_interval=0.15"]
@@ -101,6 +101,60 @@ def test_two_processes_are_one_run(tmp_path: Path, command: Run) -> None:
         "mpirun", "-np", "2", "python", *words[:-1], "--engine", "reference", succeed=False
     )
     assert serial.returncode != 0
+
+
+def test_any_process_may_stop_the_run(tmp_path: Path, command: Run) -> None:
+    program = (
+        "import sys; from lammps_inputs import make_scene; from srd_driver import Simulation\n"
+        "with Simulation(make_scene('channel'), directory=sys.argv[1]) as simulation:\n"
+        "    simulation.finish(lambda now: now.stop() if now.rank == 1 else None)\n"
+        "    print(f'at step {simulation.step}')\n"
+    )
+    out = tmp_path / "run"
+    told = command("mpirun", "-np", "2", "python", "-c", program, str(out)).stdout.splitlines()
+    reached = json.loads((out / "progress.json").read_text())["step"]
+    assert told == [f"at step {reached}"] * 2
+
+
+@pytest.mark.parametrize("ranks", [1, 2])
+def test_a_signal_to_one_process_stops_the_run_with_a_checkpoint(
+    ranks: int, tmp_path: Path, command: Run
+) -> None:
+    out = tmp_path / "run"
+    words = ["run", "channel", "--out", str(out), "--set", "equilibration=0"]
+    words += ["--set", "sampling_interval=0.15", "--checkpoint-interval", "9000"]
+    line = [str(COMMANDS / "mpirun"), "-np", str(ranks), sys.executable, "-m", "narrows", *words]
+    process = subprocess.Popen(
+        [*line, "--set", "duration=10000"],
+        env=os.environ | {"PYTHONPATH": str(ROOT)},
+        stderr=subprocess.PIPE,
+        text=True,
+    )
+    while not (out / "observables.dat").exists():
+        assert process.poll() is None
+        time.sleep(0.05)
+    os.kill(int((out / ".lock").read_text().split()[1]), signal.SIGTERM)
+    _, stderr = process.communicate(timeout=300)
+    assert process.returncode == 130
+    assert stderr == "narrows: interrupted: go on from the newest checkpoint by --resume\n"
+    reached = json.loads((out / "progress.json").read_text())["step"]
+    assert reached > 0
+    assert list(frames(out / "trajectory.lammpsdump"))[-1] == reached
+    time_reached = f"duration={reached / 1000 + 0.3}"
+    command(
+        "mpirun",
+        "-np",
+        str(ranks),
+        "python",
+        "-m",
+        "narrows",
+        *words,
+        "--resume",
+        "--set",
+        time_reached,
+    )
+    steps = list(frames(out / "trajectory.lammpsdump"))
+    assert steps == list(range(0, reached + 301, 150))
 
 
 @pytest.mark.parametrize("engine", ["srd", "reference"])
