@@ -94,6 +94,7 @@ def run(
 @contextmanager
 def _stopped_by_signals(simulation: Simulation) -> Iterator[None]:
     """Ctrl-C, or a queueing system's SIGTERM: a checkpoint, then the end; a second one: at once."""
+
     def stop(number: int, _: FrameType | None) -> None:
         signal.signal(number, before[number])
         simulation.stop()

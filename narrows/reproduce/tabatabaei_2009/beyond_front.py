@@ -35,7 +35,7 @@ def chains(quality: Quality) -> tuple[Channel, ...]:
     """Chains that fill half of their channels."""
     if quality == "quick":
         return tuple(_chain(1500, 150, 300.0, seed) for seed in (1, 2))
-    return tuple(_chain(3000, 300, 600.0, seed) for seed in (1, 2, 3))
+    return tuple(_chain(3000, 300, 600.0, seed) for seed in range(1, 7))
 
 
 @cache

@@ -27,6 +27,7 @@ from narrows.reproduce.tabatabaei_2009.state_points import (
 )
 from narrows.reproduce.tabatabaei_2009.volume_fraction import (
     DILUTE,
+    FITTED_FROM,
     INTERCEPT,
     SLOPE,
     co_moving,
@@ -37,7 +38,6 @@ from narrows.reproduce.tabatabaei_2009.volume_fraction import (
 )
 
 REST_SLOPE, REST_INTERCEPT = PaperNumber.printed("5.71"), PaperNumber.printed("0.019")  # 5.1
-FITTED_FROM = 0.02  # phi from which the line is fitted: "beyond small volume fractions"
 
 
 def many_colloids(length: int, quality: Quality) -> list[Point]:

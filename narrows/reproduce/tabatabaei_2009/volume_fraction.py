@@ -9,13 +9,15 @@ import numpy as np
 from matplotlib.axes import Axes
 
 from analysis.blocking import Estimate
+from analysis.line_fit import weighted_mean
 from narrows.reproduce.drawing import paper_line
 from narrows.reproduce.paper_figure import Column
 from narrows.reproduce.results import PaperNumber
-from narrows.reproduce.tabatabaei_2009.state_points import Speed, fit
+from narrows.reproduce.tabatabaei_2009.state_points import Speed, difference, fit
 
 SLOPE, INTERCEPT = PaperNumber.printed("0.15"), PaperNumber.printed("0.019")
 DILUTE = 0.015  # phi below which the thesis finds v_s of one colloid constant
+FITTED_FROM = 0.02  # phi from which the line is fitted: "beyond small volume fractions"
 
 
 def speed_table(series: Iterable[tuple[str, Sequence[Speed]]]) -> dict[str, Column]:
@@ -50,6 +52,18 @@ def co_moving(found: Sequence[Speed]) -> list[Estimate]:
 def slope_in_fraction(found: Sequence[Speed]) -> Estimate:
     """dv_s/dphi [a0/t0]."""
     return fit(fractions(found), co_moving(found))[1]
+
+
+def mean_above_line(found: Sequence[Speed]) -> Estimate:
+    """v_s less the thesis' line, over the points where the line was fitted [a0/t0]."""
+    fitted = [one for one in found if one.point.fraction > FITTED_FROM]
+    lines = [SLOPE.value * phi + INTERCEPT.value for phi in fractions(fitted)]
+    return weighted_mean(
+        [
+            difference(one.co_moving, Estimate(line, 0.0))
+            for one, line in zip(fitted, lines, strict=True)
+        ]
+    )
 
 
 def draw_line_of_4_6(axes: Axes, found: Sequence[Speed]) -> None:
