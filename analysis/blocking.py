@@ -104,3 +104,22 @@ def mean(series: ArrayLike) -> Estimate:
     if lengths[level] < MIN_BLOCK_LENGTH * inefficiency[level]:
         return Estimate(value, error, f"at least: {len(samples)} samples are too correlated")
     return Estimate(value, error)
+
+
+def mean_of_independent(samples: ArrayLike) -> Estimate:
+    """Mean of independent samples, as of runs that differ in their seed, with its standard error.
+
+    The error s / sqrt(n) is itself uncertain by 1 / sqrt(2 (n - 1)); below `MIN_BLOCKS` samples the
+    estimate says so.
+
+    Args:
+        samples: (n,).
+    """
+    values = np.asarray(samples, dtype=float)
+    if len(values) < 2:
+        return mean(values)
+    error = float(values.std(ddof=1) / np.sqrt(len(values)))
+    uncertain = None
+    if len(values) < MIN_BLOCKS:
+        uncertain = f"error from {len(values)} samples, so uncertain itself"
+    return Estimate(float(values.mean()), error, uncertain)

@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 from scipy.signal import lfilter
 
-from analysis.blocking import Estimate, blocking_curve, mean
+from analysis.blocking import Estimate, blocking_curve, mean, mean_of_independent
 
 PULL_BOUND = 4.4  # two-sided false-alarm rate 1e-5 for a normal deviate
 
@@ -73,6 +73,16 @@ def test_few_samples_have_their_plain_error_as_a_lower_bound():
     assert estimate.value == pytest.approx(0.4)
     assert estimate.error == pytest.approx(math.sqrt(0.06))
     assert estimate.reason == "at least: 5 samples are too few"
+
+
+@pytest.mark.parametrize(("count", "reason"), [(5, "error from 5 samples"), (6, None)])
+def test_independent_samples_have_their_plain_error(count, reason):
+    estimate = mean_of_independent(np.arange(count) % 2)
+    assert estimate.value == pytest.approx((count // 2) / count)
+    assert estimate.error == pytest.approx(math.sqrt(0.3 / count))
+    assert (estimate.reason or "").startswith(reason or "")
+    assert (estimate.reason is None) == (reason is None)
+    assert mean_of_independent([1.0]) == Estimate(1.0, None, "one sample has no error")
 
 
 def test_no_samples():

@@ -8,8 +8,7 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from numpy.typing import NDArray
 
-from analysis import blocking
-from analysis.blocking import Estimate
+from analysis.blocking import Estimate, mean_of_independent
 from lammps_inputs import Channel
 from narrows.reproduce.drawing import COLOURS, PAPER, shades
 from narrows.reproduce.paper_figure import Column, Folders, Outcome, PaperFigure, Quality
@@ -81,7 +80,7 @@ def _draw(found: Comparison, scene: Channel) -> Figure:
     for axes, low, high in ((tail, -20, min(300.0, end / 2)), (head, end - 150, end + 110)):
         axes.set(
             xlim=(low, high),
-            ylim=(0, 0.04),
+            ylim=(0, 0.045),
             ylabel=r"density $\rho$  [$a_0^{-2}$]",
             xlabel="along the channel $x$  [$a_0$];  gravity to the right",
         )
@@ -196,7 +195,7 @@ def _sharpness(found: Comparison) -> list[Result]:
         )
     ]
     for side in ("head", "tail"):
-        last = blocking.mean([float(getattr(run, f"{side}_width")[-1]) for run in found.runs])
+        last = mean_of_independent([float(getattr(run, f"{side}_width")[-1]) for run in found.runs])
         note = "; ".join(
             f"{name}: {float(getattr(ends, f'{side}_width')[-1]):.3g}"
             for name, ends in found.predicted.items()

@@ -13,8 +13,8 @@ from pathlib import Path
 import numpy as np
 from numpy.typing import NDArray
 
-from analysis import RunDirectory, blocking
-from analysis.blocking import Estimate
+from analysis import RunDirectory
+from analysis.blocking import Estimate, mean_of_independent
 from analysis.front import Front, coarse_density, fit_front, places
 from analysis.two_fluid import TwoFluid
 from lammps_inputs import Channel
@@ -162,7 +162,7 @@ class Comparison:
 
     def measured_rate(self, measure: str) -> Estimate:
         """Growth of a measure, mean over seeds."""
-        return blocking.mean([rate(run, measure) for run in self.runs])
+        return mean_of_independent([rate(run, measure) for run in self.runs])
 
     def predicted_rate(self, law: str, measure: str) -> Estimate:
         """The same as predicted."""

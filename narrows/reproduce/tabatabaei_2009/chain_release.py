@@ -11,10 +11,10 @@ from matplotlib.collections import PatchCollection
 from matplotlib.colors import Normalize
 from matplotlib.figure import Figure
 from matplotlib.patches import Circle
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import NDArray
 
-from analysis import RunDirectory, blocking, chain
-from analysis.blocking import Estimate
+from analysis import RunDirectory, chain
+from analysis.blocking import mean_of_independent
 from analysis.settling import SettlingSeries, settling_series
 from lammps_inputs import Channel
 from narrows.reproduce.drawing import PAPER, one_panel, paper_remark, shades
@@ -86,11 +86,6 @@ def _released(folders: Folders, gravity: float, quality: Quality) -> list[Releas
     return [_read(folders[scene]) for scene in release(gravity, quality)]
 
 
-def _over_runs(values: ArrayLike) -> Estimate:
-    """Mean over independent runs with its standard error."""
-    return blocking.mean(values)
-
-
 def _growth_rates(runs: Sequence[Released]) -> Array:
     """Slope of each D_i(t) up to the time of Fig. 4.14, head first, (runs, 6) [a0/t0]."""
     slopes = []
@@ -131,7 +126,7 @@ def _spacing_table(runs: Sequence[Released]) -> dict[str, list[float]]:
 
 def _rate_results(figure: str, rates: Array) -> list[Result]:
     return [
-        measured(figure, f"growth rate of D_{number}, t <= 500 [a0/t0]", _over_runs(rate))
+        measured(figure, f"growth rate of D_{number}, t <= 500 [a0/t0]", mean_of_independent(rate))
         for number, rate in enumerate(rates.T, start=1)
     ]
 
@@ -142,14 +137,14 @@ def _figure_4_12(folders: Folders, quality: Quality) -> Outcome:
     figure = _draw_spacings(runs)
     remark = "thesis: $D_1$, at the head, grows fastest; labels from the leftmost colloid"
     paper_remark(figure.axes[0], 0.0, 1.02, remark, va="bottom")
-    slope = _over_runs(np.polyfit(np.arange(rates.shape[1]), rates.T, 1)[0])
+    slope = mean_of_independent(np.polyfit(np.arange(rates.shape[1]), rates.T, 1)[0])
     contradiction = (
         "for gravity along +x the chain closes up at the head and spreads at the tail, as a "
         "current rho (c' + c rho) with c > 0 does. The thesis' own clustering at the head (Fig. "
         "4.14) means small spacings there; its D_1, counted from the leftmost colloid, is at the "
         "tail of a chain that falls to the right"
     )
-    fastest_at_head = _over_runs(rates[:, 0] - rates[:, -1])
+    fastest_at_head = mean_of_independent(rates[:, 0] - rates[:, -1])
     results = [
         *_rate_results("4.12", rates),
         claimed(
@@ -190,7 +185,7 @@ def _figure_4_13(folders: Folders, quality: Quality) -> Outcome:
         claimed(
             "4.13",
             "growth rate of the spacing at one end less at the other [a0/t0]",
-            _over_runs(rates[:, 0] - rates[:, -1]),
+            mean_of_independent(rates[:, 0] - rates[:, -1]),
             "without gravity no systematic behaviour",
             "zero",
         ),
@@ -254,7 +249,7 @@ def _figure_4_14(folders: Folders, quality: Quality) -> Outcome:
         claimed(
             "4.14",
             "zigzag of the third at the head less at the tail, t from 400 to 500 [a0]",
-            _over_runs(ends),
+            mean_of_independent(ends),
             "the zigzag is seen at the head at t = 500",
             "positive",
         ),
@@ -262,7 +257,7 @@ def _figure_4_14(folders: Folders, quality: Quality) -> Outcome:
             "4.14",
             f"colloids that the zigzag moves back, from t = {early[0]:.0f}-{early[1]:.0f} to "
             f"{late[0]:.0f}-{late[1]:.0f}",
-            _over_runs(moved),
+            mean_of_independent(moved),
             "the zigzag moves to the middle and then to the tail",
             "positive",
         ),
@@ -270,7 +265,7 @@ def _figure_4_14(folders: Folders, quality: Quality) -> Outcome:
             measured(
                 "4.14",
                 f"v_s of the chain, t from {start:.0f} to {stop:.0f} [a0/t0]",
-                _over_runs([run.speed_between(start, stop) for run in runs]),
+                mean_of_independent([run.speed_between(start, stop) for run in runs]),
                 note,
             )
             for start, stop, note in (
