@@ -51,8 +51,8 @@ inline std::array<double, 4> uniforms(const Words &words)
   return {uniform(words[0]), uniform(words[1]), uniform(words[2]), uniform(words[3])};
 }
 
-// ln w for w in (0, 1], and the cosine and sine of 2 pi u for u in [0, 1), to 2e-15 of 1. Written out,
-// as a loop over calls of the C library is not vectorised.
+// ln w for w in (0, 1], and the cosine and sine of 2 pi u for u in [0, 1), to 4 roundings of the
+// last digit. Written out as power series: loops over calls of the C library are not vectorised.
 inline double logarithm(double w)
 {
   std::uint64_t bits;
