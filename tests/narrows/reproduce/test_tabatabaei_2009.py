@@ -10,8 +10,16 @@ from lammps_inputs.deck import check_engine
 from lattice.shocks import end_rates, hopping_rates, random_walk_residuals
 from narrows.reproduce.session import Plan, run_of, select
 from narrows.reproduce.tabatabaei_2009 import PAPER
+from narrows.reproduce.tabatabaei_2009.few_colloids import crowds
 from narrows.reproduce.tabatabaei_2009.lattice_shocks import SHOCKS
-from narrows.reproduce.tabatabaei_2009.state_points import difference, fit, point
+from narrows.reproduce.tabatabaei_2009.state_points import (
+    Speed,
+    difference,
+    fit,
+    point,
+    scenes_of,
+)
+from narrows.reproduce.tabatabaei_2009.volume_fraction import mean_above_line
 
 FIGURES = [
     *("2.1", "2.2", "3.6", "3.7", "4.3", "4.4", "4.5", "4.6", "4.7", "4.8", "4.9", "4.10"),
@@ -36,6 +44,24 @@ def test_runs_can_be_run_and_are_shared(quality, tmp_path):
     assert len(folders) == len(plan.runs) == len(set(named))
     work = [run.scene.fluid_particles * run.scene.collisions for run in plan.runs]
     assert work == sorted(work, reverse=True)
+
+
+@pytest.mark.parametrize("quality", ["quick", "full"])
+def test_crowds_of_4_8_cost_nothing_beside_5_1(quality):
+    (figure,) = select(PAPER, ["5.1"])
+    assert set(scenes_of(crowds(quality))) <= set(figure.scenes(quality))
+
+
+def test_distance_from_the_line_of_4_6_where_it_was_fitted():
+    def found(colloids, above, error):
+        where = point(100, colloids, seeds=1)
+        line = Estimate(0.15 * where.fraction + 0.019 + above, error)
+        return Speed(where, line, line, 0.0)
+
+    dilute = found(1, 1.0, 1e-9)  # phi = 0.0126, below the fit
+    distance = mean_above_line([dilute, found(5, 0.003, 0.001), found(10, 0.006, 0.002)])
+    assert distance.value == pytest.approx((4 * 0.003 + 0.006) / 5)
+    assert distance.error == pytest.approx(0.002 / math.sqrt(5))
 
 
 def test_qualities_do_not_share_folders(tmp_path):
