@@ -15,7 +15,7 @@ from typing import Any
 
 import numpy as np
 
-from analysis.blocking import Estimate
+from analysis.blocking import Estimate, mean_of_independent
 from analysis.run_directory import RunDirectory, RunDirectoryError
 from analysis.summary import analyze, estimates
 
@@ -68,7 +68,7 @@ def combine(repeats: Sequence[Estimate]) -> Estimate:
         error = math.hypot(*errors) / count
         notes += dict.fromkeys(estimate.reason for estimate in known if estimate.reason)
     elif count > 1:
-        error = float(values.std(ddof=1)) / math.sqrt(count)
+        error = mean_of_independent(values).error
         if count < MIN_REPEATS:
             notes.append(f"from the spread of only {count} repeats")
     else:

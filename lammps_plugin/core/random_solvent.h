@@ -102,12 +102,13 @@ template <int D> class BathSolvent : public RandomSolvent<D> {
 
   void redraw(Fluid<D> &fluid, const CounterRandom &random, Processes &, double) override
   {
-    std::array<std::array<double, BLOCK>, 4> u;
+    constexpr int words_used = D + D % 2;    // normals come in pairs
+    std::array<std::array<double, BLOCK>, words_used> u;
     for (int begin = 0; begin < fluid.size(); begin += BLOCK) {
       const int count = std::min(BLOCK, fluid.size() - begin);
       for (int i = 0; i < count; ++i) {
         const auto words = random.words(Stream::Bath, fluid.id[begin + i]);
-        for (int word = 0; word < 4; ++word) u[word][i] = uniform(words[word]);
+        for (int word = 0; word < words_used; ++word) u[word][i] = uniform(words[word]);
       }
       for (int a = 0; a < D; a += 2) {
         double *first = fluid.v[a].data() + begin;
