@@ -1,13 +1,14 @@
 """Run directory in, numbers with errors and figures out.
 
-`analyze(directory)` does all of it, `tabulate(directory)` for all runs of a sweep; the modules hold
-the pieces, arrays in and arrays out.
+`analyze(directory)` does all of it, `tabulate(directory)` for all runs of a sweep; a measure is a
+file of `measures/`, and the other modules hold the physics, arrays in and arrays out.
 """
 
+from analysis.analyze import analyze
 from analysis.blocking import Estimate
-from analysis.run_directory import RunDirectory, RunDirectoryError
-from analysis.summary import analyze
-from analysis.sweep_table import SweepTable, is_sweep, tabulate
+from analysis.run_directory import RunDirectory
+from analysis.sweep_table import SweepTable, tabulate
+from run_files import RunDirectoryError
 
 __all__ = [
     "Estimate",
@@ -15,6 +16,5 @@ __all__ = [
     "RunDirectoryError",
     "SweepTable",
     "analyze",
-    "is_sweep",
     "tabulate",
 ]

@@ -123,3 +123,29 @@ def mean_of_independent(samples: ArrayLike) -> Estimate:
     if len(values) < MIN_BLOCKS:
         uncertain = f"error from {len(values)} samples, so uncertain itself"
     return Estimate(float(values.mean()), error, uncertain)
+
+
+def ratio(numerator: ArrayLike, denominator: ArrayLike) -> Estimate:
+    """Ratio of two time means, its error to first order in the fluctuations of both.
+
+    Args:
+        numerator, denominator: samples taken at the same times, (n,).
+    """
+    above, below = (np.asarray(series, dtype=float) for series in (numerator, denominator))
+    scale = float(below.mean())
+    if scale == 0:
+        return Estimate(None, None, "the denominator is zero")
+    value = float(above.mean()) / scale
+    deviation = mean((above - value * below) / scale)
+    return Estimate(value, deviation.error, deviation.reason)
+
+
+def root(square: Estimate) -> Estimate:
+    """Square root of an estimate that is not negative, its error to first order."""
+    if square.value is None:
+        return square
+    value = float(np.sqrt(square.value))
+    error = square.error
+    if error is not None and value > 0:
+        error /= 2 * value
+    return Estimate(value, error, square.reason)

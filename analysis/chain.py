@@ -4,12 +4,36 @@ Colloids are counted from the head, the foremost in the direction of gravity at 
 file the order never changes.
 """
 
+from dataclasses import dataclass
+
 import numpy as np
 from numpy.typing import NDArray
+
+from analysis.run_directory import RunDirectory
 
 Array = NDArray[np.float64]
 
 GROUP = 5  # spacings in a group, Fig. 4.12
+
+
+@dataclass(frozen=True)
+class Chain:
+    """Colloids from head to tail: unwrapped x along and y across the channel, each (T, N) [a0]."""
+
+    x: Array
+    y: Array
+
+
+def chain_of(run: RunDirectory) -> Chain:
+    """The colloids of a run, all frames, ordered along their drive.
+
+    Raises:
+        RunDirectoryError: when the trajectory cannot be read.
+    """
+    positions = run.particles().positions
+    gravity = float(run.acceleration(run.species().name)[0])
+    order = head_order(positions[0, :, 0], gravity)
+    return Chain(positions[:, order, 0], positions[:, order, 1])
 
 
 def head_order(x: Array, gravity: float) -> NDArray[np.int64]:

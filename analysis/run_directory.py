@@ -1,10 +1,9 @@
 """A run directory, opened for analysis: `docs/run-directory.md` is the format."""
 
-import json
 import math
 import re
 import warnings
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from functools import cached_property
 from pathlib import Path
@@ -14,36 +13,35 @@ import MDAnalysis
 import numpy as np
 from numpy.typing import NDArray
 
-from analysis.colloid_trajectory import ColloidTrajectory
+from analysis.particle_trajectory import ParticleTrajectory
+from run_files import RunDirectoryError
+from run_files.manifest import Box, Clock, Output, Solvent, Species, read_manifest
+from run_files.progress import Progress, is_begun, read_progress
+from run_files.reading import read_text, refuse
 
 Array = NDArray[np.float64]
 Steps = NDArray[np.int64]
 
-MANIFEST_KEYS = ("scene", "engine", "fields", "dimension", "fluid_particles", "colloids")
-MANIFEST_COUNTS = ("steps_per_collision", "sample_steps", "fluid_looks", "total_steps")
-
-
-class RunDirectoryError(ValueError):
-    """A directory that cannot be analysed; the message is one line that names the file."""
-
 
 @dataclass(frozen=True)
-class Observables:
+class Table:
     """Averages over each sampling interval.
 
     Attributes:
         steps: last engine step of each interval, (K,).
-        fluid_temperature: without the streaming profile, (K,) [kBT].
-        mean_velocity_x: P_t / M_t of (4.9), (K,) [a0/t0].
+        columns: by name, each (K,).
     """
 
     steps: Steps
-    fluid_temperature: Array
-    mean_velocity_x: Array
+    columns: Mapping[str, Array]
+
+    def __getitem__(self, name: str) -> Array:
+        """The column of that name, (K,)."""
+        return self.columns[name]
 
 
 @dataclass(frozen=True)
-class FluidProfile:
+class Profile:
     """The fluid by bins of y, averages over each sampling interval.
 
     Attributes:
@@ -60,18 +58,20 @@ class FluidProfile:
 
 
 @dataclass(frozen=True)
-class Colloids:
-    """The colloids at every sampled step, the first at step 0.
+class Particles:
+    """The particles at every sampled step, the first at step 0.
 
     Attributes:
         steps: engine steps, (T,).
         positions: unwrapped, from the lower corner of the box, (T, N, d) [a0].
         velocities: (T, N, d) [a0/t0].
+        species: name of the species of each particle, (N,).
     """
 
     steps: Steps
     positions: Array
     velocities: Array
+    species: NDArray[np.str_]
 
 
 class RunDirectory:
@@ -83,106 +83,93 @@ class RunDirectory:
     Args:
         path: of the directory.
 
+    Attributes:
+        path: of the directory.
+        manifest: what the run is, as its deck ran.
+
     Raises:
-        RunDirectoryError: when it is no run directory or its manifest lacks what analysis needs.
+        RunDirectoryError: when it is no run directory, or its manifest is damaged.
     """
 
     def __init__(self, path: str | Path) -> None:
-        path = Path(path)
-        if not path.is_dir():
-            raise RunDirectoryError(f"{path}: no such directory")
-        if not (path / "manifest.json").is_file():
-            raise RunDirectoryError(f"{path}: not a run directory, manifest.json is missing")
-        self.path = path
-        self.manifest = self._read_json("manifest.json")
-        for key in MANIFEST_KEYS:
-            self._require(key in self.manifest, key, "is missing")
-        self._require(isinstance(self.manifest["fields"], dict), "fields", "is not a table")
-        self._require(self.manifest["dimension"] in (2, 3), "dimension", "must be 2 or 3")
-        self._adopt_variables()
-        for key in MANIFEST_COUNTS:
-            value = self.manifest.get(key)
-            self._require(isinstance(value, int) and value > 0, key, "must be a positive integer")
-        equilibration = self.manifest.get("equilibration_steps")
-        self._require(
-            isinstance(equilibration, int) and equilibration >= 0,
-            "equilibration_steps",
-            "must be an integer, 0 or more",
-        )
-        step = self.manifest.get("time_step")
-        self._require(
-            isinstance(step, int | float) and math.isfinite(step) and step > 0,
-            "time_step",
-            "must be a positive number",
-        )
+        self.path = Path(path)
+        self.manifest = read_manifest(self.path)
+        self._profiles: dict[str, Profile] = {}
+        self._tables: dict[str, Table] = {}
+        self._particles: dict[str, Particles] = {}
 
-    def _adopt_variables(self) -> None:
-        """What `lmp -var` made of the deck's variables wins over what the scene said."""
-        if (self.path / "variables.json").is_file():
-            variables = self._read_json("variables.json")
-            if "gravity" in variables:
-                self.manifest["fields"]["gravity"] = variables.pop("gravity")
-            self.manifest |= variables
+    @property
+    def box(self) -> Box:
+        """The box."""
+        return self.manifest.system.box
 
-    def _require(self, holds: bool, key: str, problem: str) -> None:
-        if not holds:
-            raise RunDirectoryError(f"{self.path / 'manifest.json'}: {key} {problem}")
+    @property
+    def length(self) -> float:
+        """Edge of the box along x [a0]."""
+        return self.box.sizes[0]
 
-    def _read_json(self, name: str) -> dict[str, Any]:
-        try:
-            content = json.loads((self.path / name).read_text(encoding="utf-8"))
-        except (OSError, UnicodeDecodeError, json.JSONDecodeError) as error:
-            raise RunDirectoryError(f"{self.path / name}: {error}") from None
-        if not isinstance(content, dict):
-            raise RunDirectoryError(f"{self.path / name}: not a JSON object")
-        return content
+    @property
+    def width(self) -> float:
+        """Edge of the box along y [a0]."""
+        return self.box.sizes[1]
 
-    def field(self, name: str) -> Any:
-        """A field of the scene.
+    @property
+    def clock(self) -> Clock:
+        """Steps and times."""
+        return self.manifest.system.clock
+
+    @property
+    def solvent(self) -> Solvent:
+        """The fluid.
 
         Raises:
-            RunDirectoryError: when the manifest does not have it.
+            RunDirectoryError: when there is none.
         """
-        fields = self.manifest["fields"]
-        self._require(name in fields, f"fields.{name}", "is missing")
-        return fields[name]
+        if self.manifest.system.solvent is None:
+            raise RunDirectoryError(f"{self.path}: the scene {self.manifest.scene} has no fluid")
+        return self.manifest.system.solvent
 
-    def number(self, name: str) -> float:
-        """A field of the scene that is a number.
+    def species(self, name: str | None = None) -> Species:
+        """The species of that name; without a name, the only one.
 
         Raises:
-            RunDirectoryError: when the manifest does not have it, or it is none.
+            RunDirectoryError: when there is no such, or not just one.
         """
-        value = self.field(name)
-        is_number = isinstance(value, int | float) and math.isfinite(value)
-        self._require(is_number, f"fields.{name}", "must be a number")
-        return float(value)
+        known = self.manifest.system.species
+        chosen = [each for each in known if name in (None, each.name)]
+        if len(chosen) != 1:
+            names = ", ".join(each.name for each in known) or "none"
+            wanted = f"a species {name}" if name else "one species"
+            raise RunDirectoryError(f"{self.path}: {wanted} is needed; there is {names}")
+        return chosen[0]
+
+    def acceleration(self, target: str) -> Array:
+        """Sum of the drives on a species, or on `fluid`, as the deck ran, (3,) [a0/t0^2]."""
+        total = np.zeros(3)
+        for drive in self.manifest.system.drives:
+            if drive.target == target:
+                total += drive.magnitude * np.array(drive.direction)
+        return total
 
     @property
     def time_step(self) -> float:
         """Time of one engine step [t0]."""
-        return float(self.manifest["time_step"])
+        return self.clock.time_step
 
     @property
     def interval(self) -> float:
         """The sampling interval [t0]."""
-        return float(self.manifest["sample_steps"]) * self.time_step
+        return self.clock.sample_steps * self.clock.time_step
 
     @property
-    def fluid_looks(self) -> int:
+    def looks(self) -> int:
         """Evenly spaced looks at the fluid that each average is made of."""
-        return int(self.manifest["fluid_looks"])
-
-    @property
-    def viscosity_theory(self) -> float | None:
-        """Kinematic viscosity of the fluid by kinetic theory, where there is one [a0^2/t0]."""
-        theory = self.manifest.get("viscosity_theory")
-        return None if theory is None else float(theory)
+        return self.clock.sample_steps // self.clock.look_steps
 
     @property
     def equilibration_steps(self) -> int:
         """Engine steps at the start that averages leave out."""
-        return int(self.manifest["equilibration_steps"])
+        return self.clock.equilibration_steps
 
     @property
     def equilibration_time(self) -> float:
@@ -199,7 +186,7 @@ class RunDirectory:
         Raises:
             RunDirectoryError: when none does.
         """
-        used = steps - int(self.manifest["sample_steps"]) >= self.equilibration_steps
+        used = steps - self.clock.sample_steps >= self.equilibration_steps
         if not used.any():
             raise RunDirectoryError(
                 f"{self.path}: no frames after the equilibration: it ends at step "
@@ -207,22 +194,19 @@ class RunDirectory:
             )
         return np.asarray(used)
 
-    @property
-    def has_colloids(self) -> bool:
-        """Whether the scene has colloids, and so a trajectory."""
-        return int(self.manifest["colloids"]) > 0
-
     @cached_property
-    def progress(self) -> dict[str, Any]:
-        """`progress.json`, empty for a deck run by hand."""
-        if not (self.path / "progress.json").exists():
-            return {}
-        return self._read_json("progress.json")
+    def progress(self) -> Progress | None:
+        """How far a driven run is; None for a deck run by hand.
+
+        Raises:
+            RunDirectoryError: when the file is damaged.
+        """
+        return read_progress(self.path) if is_begun(self.path) else None
 
     def wall_seconds(self) -> float | None:
         """Wall time of the run: from `progress.json`, else from LAMMPS's log, else None [s]."""
-        if "wall_seconds" in self.progress:
-            return float(self.progress["wall_seconds"])
+        if self.progress:
+            return self.progress.wall_seconds
         log = self.path / "log.lammps"
         text = log.read_text(encoding="utf-8", errors="replace") if log.is_file() else ""
         found = re.search(r"^Total wall time: (\d+):(\d\d):(\d\d)", text, re.MULTILINE)
@@ -233,47 +217,70 @@ class RunDirectory:
 
     def finished(self) -> bool:
         """Whether the run came to its end, as `progress.json` or else its last output says."""
-        if "finished" in self.progress:
-            return bool(self.progress["finished"])
-        return bool(self.observables.steps[-1] >= self.manifest["total_steps"])
+        if self.progress:
+            return self.progress.finished
+        return self._last_step() >= self.clock.total_steps
 
-    @cached_property
-    def observables(self) -> Observables:
-        """`observables.dat`.
+    def simulated_time(self) -> float:
+        """Time up to the last output [t0]."""
+        return self._last_step() * self.time_step
+
+    def _last_step(self) -> int:
+        table = next(output for output in self.manifest.system.outputs if output.kind == "table")
+        return int(self.table(table.file.partition(".")[0]).steps[-1])
+
+    def _output(self, name: str, kind: str) -> Output:
+        """The output whose file has that name, without its ending."""
+        for output in self.manifest.system.outputs:
+            if output.file.partition(".")[0] == name and output.kind == kind:
+                return output
+        raise RunDirectoryError(f"{self.path / 'manifest.json'}: no {kind} {name} among outputs")
+
+    def table(self, name: str = "observables") -> Table:
+        """An output of kind `table`, by the name of its file.
 
         Raises:
             RunDirectoryError: when it is missing, malformed, empty or has gaps.
         """
-        name = "observables.dat"
-        wanted = ["TimeStep", "v_fluid_temperature", "v_mean_velocity_x"]
-        columns, count, numbers = self._read_table(name, "TimeStep", wanted)
-        table = self._reshape(name, numbers, count)[:, columns]
-        steps = self._check_steps(name, table[:, 0], first=self.manifest["sample_steps"])
-        return Observables(steps, table[:, 1], table[:, 2])
+        if name not in self._tables:
+            self._tables[name] = self._read_table_output(self._output(name, "table"))
+        return self._tables[name]
 
-    @cached_property
-    def fluid_profile(self) -> FluidProfile:
-        """`fluid_profile.dat`.
+    def _read_table_output(self, output: Output) -> Table:
+        wanted = ["TimeStep", *(f"v_{column}" for column in output.columns)]
+        columns, count, numbers = self._read_table(output.file, "TimeStep", wanted)
+        table = self._reshape(output.file, numbers, count)[:, columns]
+        steps = self._check_steps(output.file, table[:, 0], first=self.clock.sample_steps)
+        return Table(steps, dict(zip(output.columns, table[:, 1:].T, strict=True)))
+
+    def profile(self, name: str = "fluid_profile") -> Profile:
+        """An output of kind `profile`, by the name of its file.
 
         Raises:
             RunDirectoryError: when it is missing, malformed, empty or has gaps.
         """
-        name = "fluid_profile.dat"
+        if name not in self._profiles:
+            self._profiles[name] = self._read_profile(self._output(name, "profile").file)
+        return self._profiles[name]
+
+    def _read_profile(self, name: str) -> Profile:
         wanted = ["Coord1", "Ncount", "vx"]
         columns, count, numbers = self._read_table(name, "Chunk Coord1", wanted)
         if len(numbers) < 3:
             raise RunDirectoryError(f"{self.path / name}: no complete sampling interval yet")
-        bins = int(numbers[1])  # each interval: step, number of bins, particles; then the bins
-        rows = self._reshape(name, numbers, 3 + bins * count)
-        if bins < 2 or np.any(rows[:, 1] != bins):
+        bins = numbers[1]  # each interval: step, number of bins, particles; then the bins
+        if not (2 <= bins <= len(numbers) and bins == int(bins)):
+            refuse(self.path / name, f"{bins:g} bins")
+        rows = self._reshape(name, numbers, 3 + int(bins) * count)
+        if np.any(rows[:, 1] != bins):
             raise RunDirectoryError(f"{self.path / name}: the number of bins is not constant")
-        table = rows[:, 3:].reshape(len(rows), bins, count)
+        table = rows[:, 3:].reshape(len(rows), int(bins), count)
         y, counts, velocity = (table[:, :, column] for column in columns)
-        steps = self._check_steps(name, rows[:, 0], first=self.manifest["sample_steps"])
-        return FluidProfile(steps, y[0], counts, velocity)
+        steps = self._check_steps(name, rows[:, 0], first=self.clock.sample_steps)
+        return Profile(steps, y[0], counts, velocity)
 
-    def universe(self) -> MDAnalysis.Universe:
-        """The colloids as an MDAnalysis Universe: wrapped positions, masses, time from the step.
+    def universe(self, name: str = "trajectory") -> MDAnalysis.Universe:
+        """The particles as an MDAnalysis Universe: wrapped positions, masses, time from the step.
 
         `ts.data` holds the step and the image counts `ix iy iz`. `totaltime` is wrong, because
         MDAnalysis takes frames for consecutive steps; `ts.time` is right.
@@ -281,7 +288,7 @@ class RunDirectory:
         Raises:
             RunDirectoryError: when the trajectory is missing, malformed or has no complete frame.
         """
-        name = "trajectory.lammpsdump"
+        name = self._output(name, "trajectory").file
         self._require_file(name)
         with warnings.catch_warnings():
             warnings.filterwarnings("ignore", message="Guessed all Masses")
@@ -299,25 +306,40 @@ class RunDirectory:
             raise RunDirectoryError(
                 f"{self.path / name}: the columns must be id type x y z vx vy vz ix iy iz"
             )
-        universe.atoms.masses = self.manifest.get("colloid_mass") or 1.0
+        expected = sum(species.count for species in self.manifest.system.species)
+        if universe.atoms.n_atoms != expected:
+            raise RunDirectoryError(
+                f"{self.path / name}: {universe.atoms.n_atoms} particles; the manifest says "
+                f"{expected}"
+            )
+        universe.atoms.masses = self._each_particle("mass")
         return universe
 
-    @cached_property
-    def colloids(self) -> Colloids:
-        """All complete frames of `trajectory.lammpsdump`.
+    def _each_particle(self, attribute: str) -> list[Any]:
+        """An attribute of each particle's species, (N,): particles are numbered by species."""
+        species = self.manifest.system.species
+        return [getattr(each, attribute) for each in species for _ in range(each.count)]
+
+    def particles(self, name: str = "trajectory") -> Particles:
+        """All complete frames of an output of kind `trajectory`, by the name of its file.
 
         Raises:
             RunDirectoryError: as `universe`, or when frames are malformed or have gaps.
         """
-        name = "trajectory.lammpsdump"
-        universe = self.universe()
+        if name not in self._particles:
+            self._particles[name] = self._read_particles(name)
+        return self._particles[name]
+
+    def _read_particles(self, trajectory: str) -> Particles:
+        universe = self.universe(trajectory)
+        name = self._output(trajectory, "trajectory").file
         # MDAnalysis takes a last line without its newline, so a number cut short, for complete
         with (self.path / name).open("rb") as file:
             lines = sum(chunk.count(b"\n") for chunk in iter(lambda: file.read(1 << 20), b""))
         frames = lines // (universe.atoms.n_atoms + 9)
         if frames == 0:
             raise RunDirectoryError(f"{self.path / name}: no complete frame yet")
-        walk = ColloidTrajectory(universe, self.manifest["dimension"])
+        walk = ParticleTrajectory(universe, self.box.dimensions)
         try:
             results = walk.run(stop=frames).results
         except (ValueError, IndexError) as error:
@@ -325,7 +347,8 @@ class RunDirectory:
         if not (np.isfinite(results.positions).all() and np.isfinite(results.velocities).all()):
             raise RunDirectoryError(f"{self.path / name}: holds numbers that are not finite")
         steps = self._check_steps(name, results.steps, first=0)
-        return Colloids(steps, results.positions, results.velocities)
+        species = np.array(self._each_particle("name"))
+        return Particles(steps, results.positions, results.velocities, species)
 
     def _require_file(self, name: str) -> None:
         if not (self.path / name).is_file():
@@ -339,11 +362,7 @@ class RunDirectory:
         The comment line that holds `mark` names the columns. A last line that is cut short is left
         out.
         """
-        self._require_file(name)
-        try:
-            text = (self.path / name).read_text(encoding="utf-8")
-        except (OSError, UnicodeDecodeError) as error:
-            raise RunDirectoryError(f"{self.path / name}: {error}") from None
+        text = read_text(self.path / name, largest=math.inf)
         lines = text[: text.rfind("\n") + 1].splitlines()
         comments = [line[1:] for line in lines if line.startswith("#")]
         names = next((line.split() for line in comments if mark in line), [])
@@ -371,7 +390,7 @@ class RunDirectory:
     def _check_steps(self, name: str, steps: Sequence[float] | NDArray[Any], first: int) -> Steps:
         """The steps as integers, when they start at the first and leave no gap."""
         found = np.asarray(steps).astype(np.int64)
-        expected = first + int(self.manifest["sample_steps"]) * np.arange(len(found))
+        expected = first + self.clock.sample_steps * np.arange(len(found))
         wrong = np.flatnonzero(found != expected)
         if len(wrong):
             raise RunDirectoryError(

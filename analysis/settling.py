@@ -5,7 +5,8 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from analysis.run_directory import RunDirectory, RunDirectoryError
+from analysis.run_directory import RunDirectory
+from run_files import RunDirectoryError
 
 Array = NDArray[np.float64]
 
@@ -32,16 +33,16 @@ def settling_series(run: RunDirectory) -> SettlingSeries:
     Raises:
         RunDirectoryError: when its files cannot be read, or nothing lies after the equilibration.
     """
-    observables = run.observables
-    rest = settling_speed(run.colloids.positions[:, :, 0], run.interval)
-    count = min(len(rest), len(observables.steps))  # a run in progress may be ahead in one file
-    rest, steps = rest[:count], observables.steps[:count]
+    table = run.table()
+    rest = settling_speed(run.particles().positions[:, :, 0], run.interval)
+    count = min(len(rest), len(table.steps))  # a run in progress may be ahead in one file
+    rest, steps = rest[:count], table.steps[:count]
     if count == 0:
         raise RunDirectoryError(f"{run.path}: no complete sampling interval yet")
     return SettlingSeries(
         run.times(steps),
         rest,
-        co_moving(rest, observables.mean_velocity_x[:count]),
+        co_moving(rest, table["mean_velocity_x"][:count]),
         run.sampled(steps),
     )
 

@@ -1,9 +1,9 @@
 """The table of a sweep: one row a point, every number with its error (docs/sweep.md)."""
 
 import csv
+import io
 import json
 import math
-import os
 import signal
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from concurrent.futures import Future, ProcessPoolExecutor, as_completed
@@ -15,9 +15,13 @@ from typing import Any
 
 import numpy as np
 
+from analysis.analyze import SUMMARY, analyze, estimates, is_analysed
 from analysis.blocking import Estimate, mean_of_independent
-from analysis.run_directory import RunDirectory, RunDirectoryError
-from analysis.summary import analyze, estimates
+from run_files import RunDirectoryError
+from run_files.progress import is_begun, read_progress
+from run_files.reading import read_json
+from run_files.sweep_file import SweptRun, read_sweep
+from run_files.writing import replace_text
 
 MIN_REPEATS = 4  # an error from the spread of R numbers is itself uncertain by 1/sqrt(2(R - 1))
 
@@ -40,11 +44,6 @@ class SweepTable:
     finished: int
     runs: int
     problems: list[str]
-
-
-def is_sweep(directory: Path) -> bool:
-    """Whether the directory is that of a sweep."""
-    return (directory / "sweep.json").is_file()
 
 
 def combine(repeats: Sequence[Estimate]) -> Estimate:
@@ -95,44 +94,38 @@ def tabulate(
         OSError: when the table cannot be written.
     """
     directory = Path(directory)
-    try:
-        sweep = json.loads((directory / "sweep.json").read_text(encoding="utf-8"))
-        runs, over = sweep["runs"], sweep["over"]
-        finished = [name for name in runs if _finished(directory / name, runs[name])]
-    except (OSError, ValueError, KeyError, TypeError) as error:
-        raise RunDirectoryError(f"{directory / 'sweep.json'}: {error}") from None
-    stale = [name for name in finished if renew or not _is_analysed(directory / name)]
-    problems = _analyse([directory / name for name in stale], jobs, report)
+    sweep = read_sweep(directory)
+    runs = sweep.runs
+    finished, problems = [], {}
+    for name, run in runs.items():
+        try:
+            if _finished(directory / name, run):
+                finished.append(name)
+        except RunDirectoryError as error:  # one damaged run does not stop the others
+            problems[directory / name] = str(error)
+    stale = [name for name in finished if renew or not is_analysed(directory / name)]
+    problems |= _analyse([directory / name for name in stale], jobs, report)
     summaries = {
-        name: _read_estimates(directory / name / "summary.json")
+        name: _read_estimates(directory / name / SUMMARY)
         for name in finished
         if directory / name not in problems
     }
-    columns = _columns(over, [run["fields"] for run in runs.values()])
-    rows = _rows(columns, {name: runs[name]["fields"] for name in summaries}, summaries)
+    columns = _columns(sweep.over, [run.fields for run in runs.values()])
+    rows = _rows(columns, {name: runs[name].fields for name in summaries}, summaries)
     _write(directory / "table.csv", rows)
     return SweepTable(rows, len(summaries), len(runs), list(problems.values()))
 
 
 def _read_estimates(path: Path) -> dict[str, Estimate]:
-    summary = json.loads(path.read_text(encoding="utf-8"))
     return {
         name: Estimate(entry["value"], entry["error"], entry.get("reason"))
-        for name, entry in estimates(summary).items()
+        for name, entry in estimates(read_json(path)).items()
     }
 
 
-def _finished(path: Path, run: Mapping[str, Any]) -> bool:
+def _finished(path: Path, run: SweptRun) -> bool:
     """Whether the run has all the steps that the sweep wants of it."""
-    if not (path / "progress.json").is_file():
-        return False
-    return bool(RunDirectory(path).progress["step"] >= run["total_steps"])
-
-
-def _is_analysed(path: Path) -> bool:
-    summary = path / "summary.json"
-    written = (path / "progress.json").stat().st_mtime
-    return summary.is_file() and summary.stat().st_mtime >= written
+    return is_begun(path) and read_progress(path).step >= run.total_steps
 
 
 def _analyse(
@@ -212,11 +205,9 @@ def _order(point: tuple[Any, ...]) -> list[tuple[bool, float, str]]:
 
 
 def _write(path: Path, rows: Sequence[Row]) -> None:
-    """Writes beside the file and renames, so that no reader sees half of it."""
-    partial = path.with_name(path.name + ".partial")
-    with partial.open("w", encoding="utf-8", newline="") as file:
-        if rows:
-            writer = csv.DictWriter(file, list(rows[0]))
-            writer.writeheader()
-            writer.writerows(rows)
-    os.replace(partial, path)
+    text = io.StringIO()
+    if rows:
+        writer = csv.DictWriter(text, list(rows[0]))
+        writer.writeheader()
+        writer.writerows(rows)
+    replace_text(path, text.getvalue())

@@ -1,57 +1,23 @@
-"""Scenes, potentials and LAMMPS decks: text out, LAMMPS itself is never imported.
+"""Scenes, the systems they stand for, and LAMMPS decks: text out, LAMMPS is never imported.
 
-A scene is a frozen model with a unit and a meaning on every field; a deck is a folder that plain
-`lmp -in in.lammps` runs.
+A scene is a frozen model with a unit and a meaning on every field; its `system` is made of parts,
+which engines turn into a deck: a folder that plain `lmp -in in.lammps` runs.
 """
 
-import tomllib
-from pathlib import Path
-from typing import Any
-
-from lammps_inputs.bulk import Bulk
-from lammps_inputs.channel import Channel
+from lammps_inputs.engines import engine_named, engines
 from lammps_inputs.initial_state import InitialState, initial_state
-from lammps_inputs.poiseuille import Poiseuille
-from lammps_inputs.scene import SceneError, parse_assignment
-
-Scene = Channel | Poiseuille | Bulk
-SCENES: dict[str, type[Channel] | type[Poiseuille] | type[Bulk]] = {
-    scene.name: scene for scene in (Channel, Poiseuille, Bulk)
-}
+from lammps_inputs.scene import Scene, SceneError, parse_assignment, read_scene
+from lammps_inputs.scenes import make_scene, scenes
 
 __all__ = [
-    "SCENES",
-    "Bulk",
-    "Channel",
     "InitialState",
-    "Poiseuille",
     "Scene",
     "SceneError",
+    "engine_named",
+    "engines",
     "initial_state",
     "make_scene",
     "parse_assignment",
     "read_scene",
+    "scenes",
 ]
-
-
-def make_scene(name: str, **fields: Any) -> Scene:
-    """The scene of that name.
-
-    Raises:
-        SceneError: for an unknown name, or naming each wrong field, its value and what is allowed.
-    """
-    if name not in SCENES:
-        raise SceneError.of_field("scene", name, f"must be one of {', '.join(SCENES)}")
-    return SCENES[name].make(**fields)
-
-
-def read_scene(file: Path) -> dict[str, Any]:
-    """The fields of a scene file, its name among them as `scene` when the file gives it.
-
-    Raises:
-        SceneError: when the file is missing or not TOML.
-    """
-    try:
-        return tomllib.loads(file.read_text(encoding="utf-8"))
-    except (OSError, UnicodeDecodeError, tomllib.TOMLDecodeError) as error:
-        raise SceneError([f"{file}: {error}"]) from None

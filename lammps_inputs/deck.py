@@ -1,82 +1,117 @@
 """LAMMPS decks: a folder that plain `lmp -in in.lammps` runs, and `-var name value` changes.
 
-A deck contains only what its scene needs. The run directory it fills is described in
+A deck contains only what its system needs. The run directory it fills is described in
 docs/run-directory.md; the driver runs the very same lines.
 """
 
-import json
+from collections.abc import Iterator
 from pathlib import Path
-from typing import Any, Literal
 
-from lammps_inputs import Bulk, Channel, Scene, SceneError, mpc_deck, srd_deck
-from lammps_inputs.deck_lines import Start
-from lammps_inputs.viscosity import viscosity
-
-Engine = Literal["srd", "mpc", "reference"]
-DEFAULT_ENGINE: Engine = "mpc"
+from lammps_inputs.engines.engine import Engine, LammpsEngine, Start
+from lammps_inputs.engines.lammps import table, trajectory
+from lammps_inputs.initial_state import initial_state
+from lammps_inputs.scene import Scene, SceneError
+from lammps_inputs.system import System
 
 
 def check_engine(scene: Scene, engine: Engine) -> None:
     """Refuse what an engine cannot do.
 
     Raises:
-        SceneError: naming the field, its value and what the engine allows.
+        SceneError: naming the field or part, its value and what the engine allows.
     """
-    problems = list((srd_deck if engine == "srd" else mpc_deck).problems(scene))
+    problems = list(engine.problems(scene.system))
     if problems:
         raise SceneError(problems)
 
 
-def manifest(scene: Scene, engine: Engine) -> dict[str, Any]:
-    """All that analysis needs to know of the scene (docs/run-directory.md)."""
-    equilibration = round(scene.equilibration / scene.collision_time) * scene.steps_per_collision
-    return {
-        "engine": engine,
-        "scene": scene.name,
-        "fields": scene.model_dump(),
-        "dimension": scene.dimensions,
-        "box": list(scene.box),
-        "periodic": list(scene.periodic),
-        "units": {"length": "a0", "energy": "kBT", "mass": "m_f", "time": "a0 sqrt(m_f/kBT)"},
-        "time_step": scene.time_step,
-        "steps_per_collision": scene.steps_per_collision,
-        "sample_steps": scene.sample_steps,
-        "fluid_looks": scene.fluid_looks,
-        "equilibration_steps": equilibration,
-        "total_steps": scene.total_steps,
-        "fluid_particles": scene.fluid_particles,
-        "colloids": scene.colloids,
-        "colloid_mass": scene.colloid_mass if isinstance(scene, Channel) else None,
-        "viscosity_theory": _viscosity_theory(scene),
-        "seeds": {"seed": scene.seed, **(srd_deck.seeds(scene) if engine == "srd" else {})},
-    }
-
-
-def _viscosity_theory(scene: Scene) -> float | None:
-    """Kinetic theory's viscosity: none for a random solvent, or a 2D turn by 180 degrees."""
-    if scene.hydrodynamics != "on" or (scene.dimensions == 2 and scene.angle == 180):
-        return None
-    rotation = scene.rotation if isinstance(scene, Bulk) else "coordinate_axes"
-    return viscosity(scene.density, scene.collision_time, scene.angle, scene.dimensions, rotation)
+def warnings(scene: Scene, engine: Engine) -> Iterator[str]:
+    """What will be inaccurate, one line each: field, value and reason."""
+    yield from scene.warnings()
+    yield from engine.warnings(scene.system)
 
 
 def write_deck(scene: Scene, directory: Path, engine: Engine) -> None:
-    """Write scene, manifest and, for LAMMPS, input script and what it reads into a folder.
+    """Write the input script and what it reads into a folder; nothing for an engine without decks.
 
     Raises:
         SceneError: when the engine cannot run the scene.
     """
     check_engine(scene, engine)
-    (directory / "scene.toml").write_text(scene.toml(), encoding="utf-8")
-    (directory / "manifest.json").write_text(
-        json.dumps(manifest(scene, engine), indent=2) + "\n", encoding="utf-8"
-    )
-    if engine != "reference":
+    if isinstance(engine, LammpsEngine):
         (directory / "in.lammps").write_text(script(scene, engine), encoding="utf-8")
-        (mpc_deck if engine == "mpc" else srd_deck).write(scene, directory)
+        state = initial_state(scene.system, scene.seed)
+        engine.write(scene.system, state, scene.name, directory)
 
 
-def script(scene: Scene, engine: Engine, start: Start | None = None) -> str:
+def script(scene: Scene, engine: LammpsEngine, start: Start | None = None) -> str:
     """The input script; its last command is the `run`."""
-    lines = (mpc_deck if engine == "mpc" else srd_deck).lines(scene, start or Start())
-    return "\n".join(lines) + "\n"
+    return "\n".join(_lines(scene, engine, start or Start())) + "\n"
+
+
+def _lines(scene: Scene, engine: LammpsEngine, start: Start) -> Iterator[str]:
+    """The order of every deck."""
+    system = scene.system
+    yield from _title(scene)
+    yield from _variables(system, engine.seeds(scene.seed, start.step))
+    yield ""
+    yield "units lj"
+    yield f"dimension {system.box.dimensions}"
+    yield f"boundary {' '.join('p' if way else 'f' for way in (*system.box.periodic, True)[:3])}"
+    yield from engine.atoms(system, start)
+    yield ""
+    yield from engine.interactions(system)
+    yield f"timestep {system.clock.time_step!r}"
+    yield from engine.motion(system)
+    yield ""
+    if system.solvent:
+        yield from engine.solvent(system, start)
+        yield ""
+    yield from engine.averages(system, start)
+    for output in system.outputs:
+        if output.kind == "table":
+            yield from table(output, system, start)
+    for output in system.outputs:
+        if output.kind == "trajectory":
+            yield from trajectory(output, system, start)
+    yield ""
+    yield "run ${steps} upto"
+
+
+def _title(scene: Scene) -> Iterator[str]:
+    about = (type(scene).__doc__ or "").partition("\n")[0]
+    change = next((f"{drive.variable} 0.2" for drive in scene.system.drives), "steps 1000")
+    yield f"# {scene.name}: {about}"
+    yield "# run:     lmp -in in.lammps      or   mpirun -np 2 lmp -in in.lammps"
+    yield f"# change:  lmp -in in.lammps -var {change}"
+    yield "# units:   collision cell a0 = kBT = fluid particle mass m_f = 1"
+    yield ""
+
+
+def _variables(system: System, seeds: dict[str, int]) -> Iterator[str]:
+    """What `-var` changes, checked, and a file that tells what it made of them."""
+    clock = system.clock
+    for drive in system.drives:
+        yield (
+            f"variable {drive.variable} index {drive.magnitude!r} "
+            f"# acceleration of the {drive.target} along {_direction(drive.direction)}"
+        )
+    yield f"variable steps index {clock.total_steps} # of time {clock.time_step:.6g}"
+    yield f"variable sample index {clock.sample_steps} # steps between two outputs"
+    for name, seed in seeds.items():
+        yield f"variable {name} index {seed}"
+    yield (
+        f'if "${{sample}} < {2 * clock.look_steps} || $(v_sample%{clock.look_steps}) != 0" then '
+        f"\"print 'ERROR: sample must be a multiple of {clock.look_steps}, at least twice that'\" "
+        '"quit 1"'
+    )
+    told = ['"total_steps": ${steps}', '"sample_steps": ${sample}']
+    told += [f'"{drive.variable}": ${{{drive.variable}}}' for drive in system.drives]
+    yield "print '{" + ", ".join(told) + "}' file variables.json screen no # what -var made of them"
+
+
+def _direction(direction: tuple[float, float, float]) -> str:
+    axes = [axis for axis, part in zip("xyz", direction, strict=True) if part]
+    if len(axes) == 1 and abs(sum(direction)) == 1:
+        return axes[0] if sum(direction) > 0 else f"-{axes[0]}"
+    return f"({', '.join(f'{part:g}' for part in direction)})"

@@ -5,9 +5,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from lammps_inputs.bulk import Bulk
-from lammps_inputs.channel import Channel
-from lammps_inputs.poiseuille import Poiseuille
+from lammps_inputs.system import Box, System
 
 Array = NDArray[np.float64]
 
@@ -16,7 +14,10 @@ INITIAL_STREAM = 0  # Philox key of the initial state; the engines' own streams 
 
 @dataclass(frozen=True)
 class InitialState:
-    """Positions [a0] and velocities [a0/t0]: fluid (N_f, d), colloids (N_c, 2)."""
+    """Positions [a0] and velocities [a0/t0].
+
+    Fluid (N_f, d); colloids, which are the particles of all species in their order, (N_c, d).
+    """
 
     fluid_positions: Array
     fluid_velocities: Array
@@ -24,32 +25,39 @@ class InitialState:
     colloid_velocities: Array
 
 
-def initial_state(scene: Channel | Poiseuille | Bulk) -> InitialState:
-    """Colloids on the mid-line, fluid uniform in the space they leave, Maxwell velocities.
+def initial_state(system: System, seed: int) -> InitialState:
+    """Particles at their places, fluid uniform in the space they leave, Maxwell velocities.
 
-    No fluid particle lies within r_c of a colloid centre. The total momentum is made zero by one
-    velocity subtracted from every particle; the temperature is kBT = 1 on average. A function of
-    the scene alone: the same scene and seed give the same state.
+    No fluid particle lies within the radius of a particle's centre. The total momentum is made zero
+    by one velocity subtracted from all; the temperature is kBT = 1 on average. A shear wave of the
+    solvent is added last, its mean taken off. A function of system and seed alone.
     """
-    random = np.random.Generator(np.random.Philox(key=[scene.seed, INITIAL_STREAM]))
-    if isinstance(scene, Channel):
-        colloid_positions = scene.initial_colloid_positions
-        colloid_velocities = random.normal(size=(scene.colloids, 2)) / np.sqrt(scene.colloid_mass)
-        colloid_mass, radius = scene.colloid_mass, scene.colloid_radius
-    else:
-        colloid_positions = colloid_velocities = np.empty((0, scene.dimensions))
-        colloid_mass = radius = 0.0
+    random = np.random.Generator(np.random.Philox(key=[seed, INITIAL_STREAM]))
+    dimensions = system.box.dimensions
+    masses = system.masses[:, np.newaxis]
+    colloid_positions = np.empty((0, dimensions))
+    if system.placement:
+        colloid_positions = system.placement.positions(system.box, system.species, seed)
+    colloid_velocities = random.normal(size=(system.particles, dimensions)) / np.sqrt(masses)
 
+    fluid = system.solvent
     fluid_positions = _positions_outside(
-        colloid_positions, radius, np.array(scene.box), scene.fluid_particles, random
+        colloid_positions, system.radii, system.box, fluid.particles if fluid else 0, random
     )
     fluid_velocities = random.normal(size=fluid_positions.shape)
-    momentum = fluid_velocities.sum(axis=0) + colloid_mass * colloid_velocities.sum(axis=0)
-    drift = momentum / (len(fluid_velocities) + colloid_mass * len(colloid_velocities))
+    momentum = fluid_velocities.sum(axis=0)
+    mass: float = len(fluid_velocities)
+    first = 0
+    for species in system.species:
+        own = colloid_velocities[first : first + species.count]
+        momentum = momentum + species.mass * own.sum(axis=0)
+        mass += species.mass * species.count
+        first += species.count
+    drift = momentum / mass
     fluid_velocities -= drift
-    if isinstance(scene, Bulk):
+    if fluid and fluid.shear_wave:
         y = fluid_positions[:, 1]
-        wave = scene.shear_wave * np.sin(2 * np.pi * y / scene.width)
+        wave = fluid.shear_wave * np.sin(2 * np.pi * y / system.box.sizes[1])
         fluid_velocities[:, 0] += wave - wave.mean()
     return InitialState(
         fluid_positions, fluid_velocities, colloid_positions, colloid_velocities - drift
@@ -57,16 +65,16 @@ def initial_state(scene: Channel | Poiseuille | Bulk) -> InitialState:
 
 
 def _positions_outside(
-    centres: Array, radius: float, box: Array, count: int, random: np.random.Generator
+    centres: Array, radii: Array, box: Box, count: int, random: np.random.Generator
 ) -> Array:
-    """Uniform positions outside all discs, drawn until `count` are accepted."""
-    accepted = np.empty((0, len(box)))
+    """Uniform positions outside all spheres, drawn until `count` are accepted."""
+    sizes = np.array(box.sizes)
+    accepted = np.empty((0, len(sizes)))
     while len(accepted) < count:
-        trial = random.random((2 * (count - len(accepted)) + 16, len(box))) * box
+        trial = random.random((2 * (count - len(accepted)) + 16, len(sizes))) * sizes
         free = np.ones(len(trial), dtype=bool)
-        for centre in centres:
-            separation = trial - centre
-            separation[:, 0] -= box[0] * np.round(separation[:, 0] / box[0])
+        for centre, radius in zip(centres, radii, strict=True):
+            separation = box.nearest_image(trial - centre)
             free &= np.einsum("ij,ij->i", separation, separation) > radius**2
         accepted = np.concatenate([accepted, trial[free]])
     return accepted[:count]

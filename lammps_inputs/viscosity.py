@@ -6,8 +6,21 @@ its cell. Units a0 = kBT = m_f = 1, viscosity in a0^2/t0.
 """
 
 import math
+from typing import NamedTuple
 
-from lammps_inputs.scene import Rotation
+from lammps_inputs.system import Rotation, Solvent
+
+
+class Viscosity(NamedTuple):
+    """The two parts of a kinematic viscosity [a0^2/t0]."""
+
+    kinetic: float
+    collisional: float
+
+    @property
+    def total(self) -> float:
+        """Their sum."""
+        return self.kinetic + self.collisional
 
 
 def viscosity(
@@ -17,7 +30,18 @@ def viscosity(
     dimensions: int = 2,
     rotation: Rotation = "coordinate_axes",
 ) -> float:
-    """Kinematic viscosity nu of a scene's fluid.
+    """Kinematic viscosity nu of an MPC fluid, the sum of `viscosity_parts` [a0^2/t0]."""
+    return viscosity_parts(density, collision_time, angle, dimensions, rotation).total
+
+
+def viscosity_parts(
+    density: float,
+    collision_time: float,
+    angle: float,
+    dimensions: int = 2,
+    rotation: Rotation = "coordinate_axes",
+) -> Viscosity:
+    """Kinetic and collisional part of the kinematic viscosity of an MPC fluid.
 
     Args:
         density: n_f, particles per cell.
@@ -34,14 +58,35 @@ def viscosity(
     return viscosity_coordinate_axes(density, collision_time)
 
 
-def viscosity_2d(density: float, collision_time: float, alpha: float) -> float:
-    """2D, rotation by +-alpha [rad] (tabatabaei-2009 3.16)."""
+def solvent_viscosity(solvent: Solvent, dimensions: int) -> Viscosity:
+    """The parts for a solvent, as if its hydrodynamics were on."""
+    return viscosity_parts(
+        solvent.density, solvent.collision_time, solvent.angle, dimensions, solvent.rotation
+    )
+
+
+def viscosity_theory(solvent: Solvent, dimensions: int) -> float | None:
+    """The sum where theory has one: not for a random solvent, nor in 2D for 180 degrees.
+
+    Units a0^2/t0.
+    """
+    total = solvent_viscosity(solvent, dimensions).total
+    return total if solvent.hydrodynamics == "on" and math.isfinite(total) else None
+
+
+def viscosity_2d(density: float, collision_time: float, alpha: float) -> Viscosity:
+    """2D, rotation by +-alpha [rad] (tabatabaei-2009 3.16).
+
+    At 180 degrees the kinetic part is infinite: a collision reverses the transverse momentum of
+    particles, which then never decays on average.
+    """
     p = _colliding(density)
-    kinetic = collision_time * (1 / (p * (1 - math.cos(2 * alpha))) - 0.5)
-    return kinetic + p * (1 - math.cos(alpha)) / (12 * collision_time)
+    decay = p * (1 - math.cos(2 * alpha))
+    kinetic = math.inf if alpha >= math.pi else collision_time * (1 / decay - 0.5)
+    return Viscosity(kinetic, p * (1 - math.cos(alpha)) / (12 * collision_time))
 
 
-def viscosity_coordinate_axes(density: float, collision_time: float) -> float:
+def viscosity_coordinate_axes(density: float, collision_time: float) -> Viscosity:
     """3D, +-90 degrees about the coordinate axes (hecht-2005 28, Poisson-corrected).
 
     The printed kinetic factor (M + 2) / (4 (M - 1)) holds for exactly M particles in a cell; with
@@ -49,17 +94,19 @@ def viscosity_coordinate_axes(density: float, collision_time: float) -> float:
     """
     p = _colliding(density)
     q = 1 - p
-    return collision_time * (1 + 2 * q) / (4 * p) + p / (18 * collision_time)
+    return Viscosity(collision_time * (1 + 2 * q) / (4 * p), p / (18 * collision_time))
 
 
-def viscosity_random_axis(density: float, collision_time: float, alpha: float) -> float:
+def viscosity_random_axis(density: float, collision_time: float, alpha: float) -> Viscosity:
     """3D, by alpha [rad] about an axis uniform on the sphere (3.8).
 
     Gompper, Ihle, Kroll and Winkler, Adv. Polym. Sci. 221, 1 (2009), table 1.
     """
     p = _colliding(density)
     kinetic = 5 / (p * (2 - math.cos(alpha) - math.cos(2 * alpha))) - 1
-    return collision_time / 2 * kinetic + p * (1 - math.cos(alpha)) / (18 * collision_time)
+    return Viscosity(
+        collision_time / 2 * kinetic, p * (1 - math.cos(alpha)) / (18 * collision_time)
+    )
 
 
 def _colliding(density: float) -> float:

@@ -2,11 +2,13 @@
 
 import typer
 
-from narrows.analyze_cli import analyze
-from narrows.lattice_cli import app as lattice_app
-from narrows.reproduce_cli import reproduce
-from narrows.run_cli import deck, run
-from narrows.sweep_cli import status, sweep
+from narrows.commands.analyze import analyze
+from narrows.commands.deck import deck
+from narrows.commands.lattice import app as lattice_app
+from narrows.commands.reproduce import reproduce
+from narrows.commands.run import run
+from narrows.commands.status import status
+from narrows.commands.sweep import sweep
 
 app = typer.Typer(
     no_args_is_help=True,

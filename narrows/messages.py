@@ -7,6 +7,7 @@ from contextlib import contextmanager
 import typer
 
 from lammps_inputs import SceneError
+from run_files import RunDirectoryError
 from srd_driver import RunError
 from srd_driver.parallel import communicator
 
@@ -26,10 +27,13 @@ def warn(warnings: Iterable[str]) -> None:
 
 @contextmanager
 def user_errors() -> Iterator[None]:
-    """Turn what a user can mend into one message: exit code 2 for bad input, 1 for a stop."""
+    """Turn what a user can mend into one message.
+
+    Exit code 2 for bad input and files that cannot be used, 1 for a stop or a failed write.
+    """
     try:
         yield
-    except SceneError as error:
+    except (SceneError, RunDirectoryError) as error:
         _complain(str(error))
         raise typer.Exit(2) from None
     except (RunError, OSError) as error:

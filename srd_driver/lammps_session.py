@@ -6,10 +6,11 @@ from pathlib import Path
 from typing import Any
 
 from lammps_inputs import Scene
-from lammps_inputs.deck import Engine, script
-from lammps_inputs.deck_lines import Start
+from lammps_inputs.deck import script
+from lammps_inputs.engines.engine import LammpsEngine, Start
+from lammps_inputs.engines.lammps import particle_group
+from run_files.progress import Progress
 from srd_driver.errors import RunError
-from srd_driver.run_directory import Progress
 from srd_driver.session import Array
 
 
@@ -27,7 +28,7 @@ class LammpsSession:
     def __init__(
         self,
         scene: Scene,
-        engine: Engine,
+        engine: LammpsEngine,
         directory: Path,
         progress: Progress,
         checkpoint_steps: int,
@@ -38,15 +39,16 @@ class LammpsSession:
         self.step = progress.step
         self._directory = directory
         self._comm = comm
-        self._colloids = scene.colloids
+        self._species = len(scene.system.species)
+        self._dimensions = scene.system.box.dimensions
         self._set_up = False
         self._lammps = lammps(cmdargs=["-log", "none", "-screen", "none"], comm=comm)
         start = Start(progress.step, progress.checkpoint)
         *setup, run = script(scene, engine, start).splitlines()
         assert run.startswith("run "), "the last line of a deck is its run"
         setup.append(f"restart {checkpoint_steps} checkpoint.*.{self.suffix}")
-        if self._colloids:
-            setup.append("variable mean_colloid_x equal xcm(colloids,x)")
+        if self._species:
+            setup.append(f"variable mean_colloid_x equal xcm({particle_group(scene.system)},x)")
         with self._errors():
             self._lammps.command("log log.lammps append")
             self._lammps.commands_list(setup)
@@ -79,10 +81,11 @@ class LammpsSession:
         self._lammps.close()
 
     def _colloid_rows(self, name: str) -> Array:
-        # colloids come first: atom_modify first
+        # where the fluid is atoms too, colloids come first: atom_modify first
         local = self._lammps.extract_global("nlocal")
         types = self._lammps.numpy.extract_atom("type")[:local]
-        rows: Array = self._lammps.numpy.extract_atom(name)[: int((types == 1).sum()), :2]
+        colloids = int((types <= self._species).sum())
+        rows: Array = self._lammps.numpy.extract_atom(name)[:colloids, : self._dimensions]
         return rows
 
     @contextlib.contextmanager

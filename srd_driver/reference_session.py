@@ -5,8 +5,9 @@ from pathlib import Path
 import numpy as np
 
 from lammps_inputs import Scene
+from lammps_inputs.system import FLUID_AVERAGES, FLUID_PROFILE, TRAJECTORY
+from run_files.progress import Progress
 from srd_driver.reference import ReferenceEngine
-from srd_driver.run_directory import Progress
 from srd_driver.session import Array
 
 
@@ -23,7 +24,10 @@ class ReferenceSession:
         else:
             self._engine = ReferenceEngine(scene)
         self.step = progress.step
-        self._bins = 2 * round(scene.width)
+        self._system, self._clock = scene.system, scene.system.clock
+        self._box = scene.system.box
+        self._width = self._box.sizes[1]
+        self._bins = 2 * round(self._width)
         for name, title in _TITLES.items():
             if not (directory / name).exists():
                 (directory / name).write_text(title, encoding="utf-8")
@@ -39,11 +43,12 @@ class ReferenceSession:
 
     def mean_colloid_position(self) -> float:
         engine = self._engine
-        unwrapped = engine.colloid_positions[:, 0] + engine.colloid_images * self._scene.length
+        images = engine.colloid_images[:, 0]
+        unwrapped = engine.colloid_positions[:, 0] + images * self._box.sizes[0]
         return float(unwrapped.mean())
 
     def advance(self, steps: int) -> None:
-        for _ in range(steps // self._scene.sample_steps):
+        for _ in range(steps // self._clock.sample_steps):
             self._sample()
 
     def save(self, file: str) -> None:
@@ -56,24 +61,24 @@ class ReferenceSession:
 
     def _sample(self) -> None:
         """One sampling interval: as many looks at the fluid as the deck takes, averaged."""
-        looks = self._scene.fluid_looks
-        every = self._scene.collisions_per_sample // looks
+        looks = self._clock.looks
+        every = self._clock.look_steps // self._clock.steps_per_collision
         count, momentum, squares = np.zeros((3, self._bins))
         temperature = mean_velocity = 0.0
         for _ in range(looks):
             self._engine.advance(every)
             velocity = self._engine.fluid_velocities
             y = self._engine.fluid_positions[:, 1]
-            layer = np.minimum((y * (self._bins / self._scene.width)).astype(int), self._bins - 1)
+            layer = np.minimum((y * (self._bins / self._width)).astype(int), self._bins - 1)
             count += np.bincount(layer, minlength=self._bins)
             momentum += np.bincount(layer, velocity[:, 0], self._bins)
             squares += np.bincount(layer, (velocity**2).sum(axis=1), self._bins)
             temperature += self._engine.fluid_temperature() / looks
             mean_velocity += float(self._engine.mean_velocity()[0]) / looks
-        self.step += self._scene.sample_steps
+        self.step += self._clock.sample_steps
 
-        depth = self._scene.width / self._bins
-        volume = depth * self._scene.length * np.prod(self._scene.box[2:])
+        depth = self._width / self._bins
+        volume = depth * self._box.sizes[0] * np.prod(self._box.sizes[2:])
         occupied = np.maximum(count, 1)
         columns = np.column_stack(
             [
@@ -82,52 +87,49 @@ class ReferenceSession:
                 count / looks,
                 count / looks / volume,
                 momentum / occupied,
-                squares / (occupied * self._scene.dimensions),
+                squares / (occupied * self._box.dimensions),
             ]
         )
-        with (self._directory / "fluid_profile.dat").open("a", encoding="utf-8") as file:
+        with (self._directory / FLUID_PROFILE.file).open("a", encoding="utf-8") as file:
             file.write(f"{self.step} {self._bins} {count.sum() / looks:g}\n")
             np.savetxt(file, columns, fmt="  %d %g %g %g %.6g %.6g")
-        with (self._directory / "observables.dat").open("a", encoding="utf-8") as file:
+        with (self._directory / FLUID_AVERAGES.file).open("a", encoding="utf-8") as file:
             file.write(f"{self.step} {temperature:.8g} {mean_velocity:.8g}\n")
         self._write_frame()
 
     def _write_frame(self) -> None:
-        if not self._scene.colloids:
+        count, dimensions = self._engine.colloid_positions.shape
+        if not count:
             return
         engine = self._engine
-        number = np.arange(1, self._scene.colloids + 1)
-        zero = np.zeros(len(number))
-        columns = np.column_stack(
-            [
-                number,
-                np.ones(len(number)),
-                engine.colloid_positions,
-                zero,
-                engine.colloid_velocities,
-                zero,
-                engine.colloid_images,
-                zero,
-                zero,
-            ]
-        )
-        with (self._directory / "trajectory.lammpsdump").open("a", encoding="utf-8") as file:
+        columns = np.zeros((count, len(TRAJECTORY.columns)))
+        columns[:, 0] = np.arange(1, count + 1)
+        columns[:, 1] = self._system.atom_types()
+        for first, values in (
+            (2, engine.colloid_positions),
+            (5, engine.colloid_velocities),
+            (8, engine.colloid_images),
+        ):
+            columns[:, first : first + dimensions] = values
+        ends = [(0.0, size) for size in self._box.sizes] + [(-0.5, 0.5)] * (3 - dimensions)
+        periodic = (*self._box.periodic, True)[:3]
+        with (self._directory / TRAJECTORY.file).open("a", encoding="utf-8") as file:
             file.write(
-                f"ITEM: TIMESTEP\n{self.step}\nITEM: NUMBER OF ATOMS\n{len(number)}\n"
-                "ITEM: BOX BOUNDS pp ff pp\n"
-                f"0 {self._scene.length!r}\n0 {self._scene.width!r}\n-0.5 0.5\n"
-                "ITEM: ATOMS id type x y z vx vy vz ix iy iz\n"
+                f"ITEM: TIMESTEP\n{self.step}\nITEM: NUMBER OF ATOMS\n{count}\n"
+                f"ITEM: BOX BOUNDS {' '.join('pp' if way else 'ff' for way in periodic)}\n"
             )
+            file.writelines(f"{low:g} {high!r}\n" for low, high in ends)
+            file.write(f"ITEM: ATOMS {' '.join(TRAJECTORY.columns)}\n")
             np.savetxt(file, columns, fmt="%d %d " + 6 * "%.10g " + "%d %d %d")
 
 
 _TITLES = {
-    "fluid_profile.dat": (
+    FLUID_PROFILE.file: (
         "# Chunk-averaged data for fix profile and group fluid\n"
         "# Timestep Number-of-chunks Total-count\n"
         "# Chunk Coord1 Ncount density/number vx temp\n"
     ),
-    "observables.dat": (
+    FLUID_AVERAGES.file: (
         "# Time-averaged data for fix observables\n"
         "# TimeStep v_fluid_temperature v_mean_velocity_x\n"
     ),

@@ -9,18 +9,21 @@ Array = NDArray[np.float64]
 
 
 class Session(Protocol):
-    """One engine at work; each file it writes is described in docs/run-directory.md."""
+    """One engine at work; each file it writes is described in docs/run-directory.md.
+
+    Colloids are the particles of all species.
+    """
 
     step: int
     suffix: str  # of its checkpoint files
 
     @property
     def colloid_positions(self) -> Array:
-        """Colloid centres of this process, (n, 2), wrapped into the box: a view [a0]."""
+        """Centres of the colloids of this process, (n, d), wrapped into the box: a view [a0]."""
 
     @property
     def colloid_velocities(self) -> Array:
-        """Colloid velocities of this process, (n, 2): a view [a0/t0]."""
+        """Velocities of the colloids of this process, (n, d): a view [a0/t0]."""
 
     def mean_colloid_position(self) -> float:
         """Mean unwrapped x of all colloids [a0]."""

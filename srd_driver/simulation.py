@@ -9,31 +9,17 @@ from pathlib import Path
 from types import TracebackType
 from typing import Any, Self, TextIO
 
-import lammps_plugin
-from lammps_inputs import Scene
-from lammps_inputs.deck import DEFAULT_ENGINE, Engine, check_engine
-from srd_driver import run_directory
+from lammps_inputs import Scene, engine_named
+from lammps_inputs.engines import DEFAULT
+from run_files.names import checkpoint_name
+from run_files.progress import Progress, is_begun, write_failure, write_progress
+from srd_driver import resume as run_directory
+from srd_driver.engines import require_engine, start_session
 from srd_driver.errors import RunError
 from srd_driver.parallel import agree, communicator
-from srd_driver.run_directory import Progress
 from srd_driver.session import Array, Session
 
 PIECE_SECONDS = 0.5  # between two reports of progress
-
-
-def require_engine(scene: Scene, engine: Engine) -> None:
-    """Refuse a scene that the engine cannot run, or an engine that is not installed.
-
-    Raises:
-        SceneError: naming the field, its value and what the engine allows.
-        RunError: for fix mpc without the plugin.
-    """
-    check_engine(scene, engine)
-    if engine == "mpc" and not lammps_plugin.folder():
-        raise RunError(
-            "fix mpc was not built when narrows was installed: install a C++17 compiler, then "
-            "narrows again with NARROWS_REQUIRE_PLUGIN=1; or use --engine srd"
-        )
 
 
 class Simulation:
@@ -45,12 +31,13 @@ class Simulation:
 
     Args:
         scene: what to simulate.
-        engine: `mpc` (our fix mpc), `srd` (LAMMPS's own fix srd) or `reference` (numpy).
+        engine: name of an engine (docs/scenes.md); default: our fix mpc.
         directory: the run directory, new or empty; none: a temporary one, gone after `close`.
         resume: go on with the run in `directory` from its newest checkpoint, or begin it.
         checkpoint_interval: time between two checkpoints, in whole sampling intervals [t0].
 
-    Under `mpirun` every process makes the same calls; each sees the colloids it owns.
+    Under `mpirun` every process makes the same calls; each sees the colloids that it owns at the
+    time, as LAMMPS distributes them, in LAMMPS's order.
 
     Raises:
         SceneError: when the engine cannot run the scene.
@@ -60,17 +47,17 @@ class Simulation:
     def __init__(
         self,
         scene: Scene,
-        engine: Engine = DEFAULT_ENGINE,
+        engine: str = DEFAULT,
         directory: str | Path | None = None,
         resume: bool = False,
         checkpoint_interval: float = 20.0,
     ) -> None:
         self.scene = scene
         self.engine = engine
+        self._engine = engine_named(engine)
+        self._clock = scene.system.clock
         self._comm = communicator()
-        if engine == "reference" and self._comm.size > 1:
-            raise RunError("the reference engine runs on one process; use --engine mpc with mpirun")
-        require_engine(scene, engine)
+        require_engine(scene, self._engine, self._comm.size)
         self._temporary: tempfile.TemporaryDirectory[str] | None = None
         self._lock: TextIO | None = None
         self._session: Session | None = None
@@ -82,13 +69,21 @@ class Simulation:
         except BaseException:
             self.close()
             raise
-        samples = max(1, round(checkpoint_interval / scene.time_step / scene.sample_steps))
-        self._checkpoint_steps = samples * scene.sample_steps
+        interval = self._clock.sample_steps * self._clock.time_step
+        samples = max(1, round(checkpoint_interval / interval))
+        self._checkpoint_steps = samples * self._clock.sample_steps
         self._began = clock.perf_counter()
         self._piece = 1  # sampling intervals run between two reports
-        if self._progress.step < scene.total_steps:
+        if self._progress.step < self._clock.total_steps:
             try:
-                self._session = self._start()
+                self._session = start_session(
+                    scene,
+                    self._engine,
+                    self.directory,
+                    self._progress,
+                    self._checkpoint_steps,
+                    self._comm,
+                )
             except BaseException as error:
                 self.__exit__(type(error), error, error.__traceback__)
                 raise
@@ -100,25 +95,9 @@ class Simulation:
         directory = directory.resolve()
         ranks = self._comm.size
         self._lock = run_directory.take(directory, resume)
-        if resume and run_directory.is_begun(directory):
-            return directory, run_directory.reopen(self.scene, self.engine, directory, ranks)
-        return directory, run_directory.create(self.scene, self.engine, directory, ranks)
-
-    def _start(self) -> Session:
-        if self.engine == "reference":
-            from srd_driver.reference_session import ReferenceSession
-
-            return ReferenceSession(self.scene, self.directory, self._progress)
-        from srd_driver.lammps_session import LammpsSession
-
-        return LammpsSession(
-            self.scene,
-            self.engine,
-            self.directory,
-            self._progress,
-            self._checkpoint_steps,
-            self._comm,
-        )
+        if resume and is_begun(directory):
+            return directory, run_directory.reopen(self.scene, self._engine, directory, ranks)
+        return directory, run_directory.create(self.scene, self._engine, directory, ranks)
 
     @property
     def rank(self) -> int:
@@ -133,25 +112,28 @@ class Simulation:
     @property
     def time(self) -> float:
         """Simulated time [t0]."""
-        return self.step * self.scene.time_step
+        return self.step * self._clock.time_step
 
     @property
     def finished(self) -> bool:
         """Whether the scene's equilibration and duration are over."""
-        return self.step >= self.scene.total_steps
+        return self.step >= self._clock.total_steps
 
     @property
     def colloid_positions(self) -> Array:
-        """Colloid centres, (N_c, 2), wrapped, a view of the engine's own memory [a0]."""
+        """Centres of the particles of all species, (n, d), wrapped [a0].
+
+        A view of the engine's own memory. Under mpirun, those of this process only, n of them.
+        """
         return self._running().colloid_positions
 
     @property
     def colloid_velocities(self) -> Array:
-        """Colloid velocities, (N_c, 2), a view of the engine's own memory [a0/t0]."""
+        """Their velocities, (n, d), a view of the engine's own memory [a0/t0]."""
         return self._running().colloid_velocities
 
     def mean_colloid_position(self) -> float:
-        """Mean unwrapped x of all colloids [a0]."""
+        """Mean unwrapped x of all particles, of every process [a0]."""
         return self._running().mean_colloid_position()
 
     def run(self, time: float, report: Callable[[Self], Any] | None = None) -> None:
@@ -164,14 +146,13 @@ class Simulation:
             RunError: when the engine stops; what was written stays, `resume` goes on from the
                 newest checkpoint.
         """
-        sample = self.scene.sample_steps
-        self._run_until(
-            self.step + max(1, round(time / self.scene.time_step / sample)) * sample, report
-        )
+        sample = self._clock.sample_steps
+        samples = max(1, round(time / (sample * self._clock.time_step)))
+        self._run_until(self.step + samples * sample, report)
 
     def finish(self, report: Callable[[Self], Any] | None = None) -> None:
         """Run to the end of the scene's duration; as `run`."""
-        self._run_until(self.scene.total_steps, report)
+        self._run_until(self._clock.total_steps, report)
 
     def stop(self) -> None:
         """Let the `run` or `finish` under way, or the next, return soon, a checkpoint written.
@@ -184,15 +165,15 @@ class Simulation:
     def checkpoint(self) -> None:
         """Write a checkpoint now: `resume` goes on from here."""
         session = self._running()
-        name = f"checkpoint.{self.step}.{session.suffix}"
+        name = checkpoint_name(self.step, session.suffix)
         with self._way_on():
             session.save(name)
         wall_seconds = self._progress.wall_seconds + clock.perf_counter() - self._began
         self._began = clock.perf_counter()
-        progress = Progress(self.step, wall_seconds, self.finished, name)
-        self._progress = agree(
-            self._comm, lambda: run_directory.write_progress(self.directory, progress)
+        progress = Progress(
+            step=self.step, wall_seconds=wall_seconds, finished=self.finished, checkpoint=name
         )
+        self._progress = agree(self._comm, lambda: write_progress(self.directory, progress))
 
     def close(self) -> None:
         """Release the engine, and the run directory if it was a temporary one."""
@@ -214,11 +195,11 @@ class Simulation:
         trace: TracebackType | None,
     ) -> None:
         if isinstance(error, RunError):
-            run_directory.write_failure(self.directory, str(error))
+            write_failure(self.directory, str(error))
         self.close()
 
     def _run_until(self, end: int, report: Callable[[Self], Any] | None) -> None:
-        sample = self.scene.sample_steps
+        sample = self._clock.sample_steps
         while self.step < end:
             session = self._running()
             next_checkpoint = (self.step // self._checkpoint_steps + 1) * self._checkpoint_steps
@@ -252,7 +233,7 @@ class Simulation:
             reason = str(error)
             if shutil.disk_usage(self.directory).free < 2**20:
                 reason = f"the disk is full ({reason})"
-            saved = self._progress.step * self.scene.time_step
+            saved = self._progress.step * self._clock.time_step
             raise RunError(
                 f"stopped after step {self.step}: {reason}; nothing written before time "
                 f"{saved:g} is lost, go on from there by --resume (in Python: resume=True)"

@@ -4,8 +4,10 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Literal
 
-from lammps_inputs import make_scene
-from srd_driver import run_directory
+from lammps_inputs import engine_named, make_scene
+from run_files.manifest import read_manifest
+from run_files.progress import is_begun, read_failure, read_progress
+from srd_driver.resume import newest_step, stored_fields
 from srd_driver.run_lock import is_locked
 from srd_driver.sweep import Run, is_finished
 
@@ -39,19 +41,19 @@ def status_of(run: Run) -> Status:
     Raises:
         RunError: when its directory holds another run.
     """
-    step = run.scene.time_step
-    end = run.scene.total_steps * step
+    clock = run.scene.system.clock
+    step, end = clock.time_step, clock.end
     locked = is_locked(run.folder)
-    if not run_directory.is_begun(run.folder):
+    if not is_begun(run.folder):
         return Status("running" if locked else "waiting", 0.0, end, None, None)
     finished = is_finished(run)
-    progress = run_directory.read_progress(run.folder)
+    progress = read_progress(run.folder)
     speed = progress.step * step / progress.wall_seconds if progress.wall_seconds else None
-    failure = run_directory.read_failure(run.folder)
+    failure = read_failure(run.folder)
     if finished:
         return Status("finished", progress.step * step, end, speed, None)
     if locked:
-        return Status("running", run_directory.newest_step(run.folder) * step, end, speed, None)
+        return Status("running", newest_step(run.folder) * step, end, speed, None)
     state: State = "stopped" if failure is None else "failed"
     return Status(state, progress.step * step, end, speed, failure)
 
@@ -63,6 +65,6 @@ def stored_run(directory: Path) -> Run:
         RunError: when it holds none.
         SceneError: when its scene is not one of this version.
     """
-    fields = run_directory.stored_fields(directory)
-    scene = make_scene(fields.pop("scene"), **fields)
-    return Run(directory, scene, run_directory.stored_engine(directory))
+    fields = stored_fields(directory)
+    scene = make_scene(str(fields.pop("scene", None)), **fields)
+    return Run(directory, scene, engine_named(read_manifest(directory).engine))

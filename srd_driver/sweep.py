@@ -7,16 +7,16 @@ a kill, by another command or by a queueing system: finished ones are skipped, h
 import os
 import signal
 import subprocess
-import sys
 import time as clock
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 
 from lammps_inputs import Scene
-from lammps_inputs.deck import Engine
-from srd_driver import run_directory
-from srd_driver.run_directory import CHANGEABLE
+from lammps_inputs.engines.engine import Engine
+from run_files.progress import is_begun, read_progress, write_failure
+from srd_driver import worker
+from srd_driver.resume import newest_step, refuse_another_scene
 from srd_driver.run_lock import is_locked
 
 POLL_SECONDS = 0.2
@@ -44,7 +44,7 @@ class Failure:
 class Advance:
     """How far the runs are together.
 
-    `work` is the fraction of all fluid-particle updates done, which run time is proportional to.
+    `work` is the fraction of all particle updates done, which run time is proportional to.
     """
 
     work: float
@@ -60,25 +60,10 @@ def is_finished(run: Run) -> bool:
     Raises:
         RunError: when the directory holds another scene or engine.
     """
-    if not run_directory.is_begun(run.folder):
+    if not is_begun(run.folder):
         return False
-    run_directory.refuse_another_scene(run.scene, run.engine, run.folder)
-    return run_directory.read_progress(run.folder).step >= run.scene.total_steps
-
-
-def command(run: Run) -> list[str]:
-    """The command that begins the run or goes on with it; it may be given again and again."""
-    default = {name: field.default for name, field in type(run.scene).model_fields.items()}
-    settings = [
-        f"{name}={value}"
-        for name, value in run.scene.model_dump().items()
-        if value != default[name] or name in CHANGEABLE
-    ]
-    return [
-        *(sys.executable, "-m", "narrows", "run", run.scene.name, "--engine", run.engine),
-        *(word for setting in settings for word in ("--set", setting)),
-        *("--out", str(run.folder), "--resume"),
-    ]
+    refuse_another_scene(run.scene, run.engine, run.folder)
+    return read_progress(run.folder).step >= run.scene.system.clock.total_steps
 
 
 def available_cores() -> int:
@@ -136,7 +121,7 @@ def _start(run: Run) -> subprocess.Popen[bytes]:
     one_core = {"OMP_NUM_THREADS": "1", "NUMBA_NUM_THREADS": "1"}
     with _log(run).open("wb") as log:
         return subprocess.Popen(
-            command(run),
+            worker.command(run.folder, run.scene, run.engine),
             stdin=subprocess.DEVNULL,
             stdout=log,
             stderr=subprocess.STDOUT,
@@ -173,19 +158,17 @@ def _failure(run: Run, code: int) -> Failure:
     said = log.read_text(encoding="utf-8", errors="replace").strip() if log.exists() else ""
     if code < 0:
         reason = f"killed by {signal.Signals(-code).name}"
-    elif "narrows: " in said:
-        reason = " ".join(said.rpartition("narrows: ")[2].split())
     else:
         reason = said.splitlines()[-1] if said else f"exit code {code}"
-    if run_directory.is_begun(run.folder):
-        run_directory.write_failure(run.folder, reason)
+    if is_begun(run.folder):
+        write_failure(run.folder, reason)
     return Failure(run, f"{reason} (its output: {log})")
 
 
 def _advance(
     runs: Sequence[Run], unfinished: Sequence[Run], failures: Sequence[Failure], running: int
 ) -> Advance:
-    work = {run: run.scene.fluid_particles * run.scene.collisions for run in runs}
+    work = {run: run.scene.system.work for run in runs}
     open_runs = [*unfinished, *(failure.run for failure in failures)]
     left = sum(work[run] * (1 - _fraction(run)) for run in open_runs)
     finished = len(runs) - len(open_runs)
@@ -193,6 +176,6 @@ def _advance(
 
 
 def _fraction(run: Run) -> float:
-    if not run_directory.is_begun(run.folder):
+    if not is_begun(run.folder):
         return 0.0
-    return min(1.0, run_directory.newest_step(run.folder) / run.scene.total_steps)
+    return min(1.0, newest_step(run.folder) / run.scene.system.clock.total_steps)

@@ -4,20 +4,17 @@ A point is one combination of the swept fields; its repeats differ by the seed a
 """
 
 import itertools
-import json
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
-from typing import Any, get_args
+from typing import Any
 
-from lammps_inputs import SCENES, SceneError, make_scene
-from lammps_inputs.deck import Engine
+from lammps_inputs import SceneError, engine_named, make_scene
+from lammps_inputs.engines.engine import Engine
+from run_files.sweep_file import NAME, SweepFile, SweptRun, is_sweep, read_sweep, write_sweep
+from srd_driver.engines import require_engine
 from srd_driver.errors import RunError
-from srd_driver.run_directory import replace_text
-from srd_driver.simulation import require_engine
 from srd_driver.sweep import Run, is_finished
-
-FILE = "sweep.json"
 
 
 @dataclass(frozen=True)
@@ -37,7 +34,7 @@ def plan(
     fields: Mapping[str, Any],
     over: Mapping[str, Sequence[Any]],
     repeats: int,
-    engine: Engine,
+    engine: str,
 ) -> Sweep:
     """The product of the lists of `over`, each point with the seeds seed, seed + 1, ...
 
@@ -52,6 +49,7 @@ def plan(
     """
     if "seed" in over and repeats > 1:
         raise SceneError.of_field("repeats", repeats, "must be 1 where the seed is swept")
+    runs_by = engine_named(engine)
     runs: dict[str, Run] = {}
     problems: dict[str, list[str]] = {}
     for values in itertools.product(*over.values()):
@@ -63,18 +61,18 @@ def plan(
                 run_scene = make_scene(
                     scene, **(first.model_dump() | {"seed": first.seed + repeat})
                 )
-                require_engine(run_scene, engine)
+                require_engine(run_scene, runs_by)
                 names = [*over, "seed"] if "seed" not in over else over
                 name = _label({field: getattr(run_scene, field) for field in names})
                 if name in runs:
                     raise SceneError(["given twice"])
-                runs[name] = Run(directory / name, run_scene, engine)
+                runs[name] = Run(directory / name, run_scene, runs_by)
         except SceneError as error:
             for problem in error.problems:
                 problems.setdefault(problem, []).append(label)
     if problems:
         raise SceneError(f"{_points(labels)}: {text}" for text, labels in problems.items())
-    return Sweep(directory, scene, engine, tuple(over), tuple(runs.values()))
+    return Sweep(directory, scene, runs_by, tuple(over), tuple(runs.values()))
 
 
 def store(sweep: Sweep) -> Sweep:
@@ -94,56 +92,46 @@ def store(sweep: Sweep) -> Sweep:
         before = read(directory)
         if (before.scene, before.engine) != (sweep.scene, sweep.engine):
             raise RunError(
-                f"{directory} holds a sweep of {before.scene} by the engine {before.engine}, "
-                f"not of {sweep.scene} by {sweep.engine}: choose another folder"
+                f"{directory} holds a sweep of {before.scene} by the engine {before.engine.name}, "
+                f"not of {sweep.scene} by {sweep.engine.name}: choose another folder"
             )
         over = tuple(dict.fromkeys(before.over + sweep.over))
         runs = {run.folder: run for run in before.runs + sweep.runs}
         sweep = Sweep(directory, sweep.scene, sweep.engine, over, tuple(runs.values()))
     elif directory.is_dir() and any(directory.iterdir()):
         raise RunError(f"{directory} is not empty and holds no sweep: choose another folder")
-    content = {
-        "scene": sweep.scene,
-        "engine": sweep.engine,
-        "over": sweep.over,
-        "runs": {
-            run.folder.name: {
-                "fields": run.scene.model_dump(),
-                "total_steps": run.scene.total_steps,
-            }
-            for run in sweep.runs
-        },
-    }
     directory.mkdir(parents=True, exist_ok=True)
-    replace_text(directory / FILE, json.dumps(content, indent=1) + "\n")
+    runs_of_file = {
+        run.folder.name: SweptRun(
+            fields=run.scene.model_dump(mode="json"),
+            total_steps=run.scene.system.clock.total_steps,
+        )
+        for run in sweep.runs
+    }
+    write_sweep(
+        directory,
+        SweepFile(scene=sweep.scene, engine=sweep.engine.name, over=sweep.over, runs=runs_of_file),
+    )
     return sweep
-
-
-def is_sweep(directory: Path) -> bool:
-    """Whether the directory is that of a sweep."""
-    return (directory / FILE).is_file()
 
 
 def read(directory: Path) -> Sweep:
     """The sweep of a directory.
 
     Raises:
-        RunError: when it holds none.
+        RunDirectoryError: when it holds none, or a damaged one.
+        RunError: when its scene or engine is none of this version.
     """
+    content = read_sweep(directory)
     try:
-        content = json.loads((directory / FILE).read_text(encoding="utf-8"))
-        scene, engine = content["scene"], content["engine"]
+        engine = engine_named(content.engine)
         runs = tuple(
-            Run(directory / name, make_scene(scene, **run["fields"]), engine)
-            for name, run in content["runs"].items()
+            Run(directory / name, make_scene(content.scene, **run.fields), engine)
+            for name, run in content.runs.items()
         )
-        if scene not in SCENES or engine not in get_args(Engine):
-            raise ValueError(f"scene {scene}, engine {engine}")
-        return Sweep(directory, scene, engine, tuple(content["over"]), runs)
-    except OSError:
-        raise RunError(f"{directory} holds no sweep: it has no {FILE}") from None
-    except (ValueError, KeyError, TypeError, AttributeError) as error:
-        raise RunError(f"{directory / FILE} is not that of a sweep: {error}") from None
+    except (SceneError, TypeError) as error:
+        raise RunError(f"{directory / NAME} is not that of a sweep: {error}") from None
+    return Sweep(directory, content.scene, engine, content.over, runs)
 
 
 def _label(point: Mapping[str, Any]) -> str:

@@ -11,7 +11,7 @@ from functools import cached_property
 import numpy as np
 from numpy.typing import NDArray
 
-from lammps_inputs.scene import Rotation
+from lammps_inputs.system import Rotation
 from srd_driver.reference.counter_random import CounterRandom, Stream
 
 Array = NDArray[np.float64]

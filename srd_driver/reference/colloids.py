@@ -1,8 +1,9 @@
-"""Colloids in the fluid: the forces of (3.42), (3.43) and (3.49), and who may feel them.
+"""Particles of all species in the fluid: their forces, and who may feel them.
 
-Arrays hold the components first: fluid (2, N_f), colloids (2, N_c). Positions may leave the
-periodic box between two collisions; a pair keeps the image that was nearest when it was found.
-Equations of tabatabaei-2009, 3.4.
+Arrays hold the components first: fluid (d, N_f), colloids (d, N_c), which are the particles of all
+species in their order. Positions may leave the periodic box between two collisions; a pair keeps
+the image that was nearest when it was found. Equations of tabatabaei-2009, 3.4: (3.42), (3.43) and
+(3.49).
 """
 
 from dataclasses import dataclass
@@ -10,7 +11,8 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from lammps_inputs import Channel
+from lammps_inputs.potentials.repulsive_mie import RepulsiveMie
+from lammps_inputs.system import Box, PairPotential, Solvent, System
 from srd_driver.reference.faults import SimulationFault
 
 Array = NDArray[np.float64]
@@ -25,7 +27,7 @@ class Pairs:
 
     Attributes:
         first, second: particle numbers (pairs,).
-        image: added to the x of the separation (pairs,) [a0].
+        image: added to the separation (d, pairs) [a0].
     """
 
     first: Indices
@@ -33,20 +35,18 @@ class Pairs:
     image: Array
 
     def separations(self, first: Array, second: Array) -> Array:
-        """(2, pairs) from positions (2, N) of both kinds."""
-        separation = first[:, self.first] - second[:, self.second]
-        separation[0] += self.image
-        return separation
+        """(d, pairs) from positions (d, N) of both kinds."""
+        return first[:, self.first] - second[:, self.second] + self.image
 
     def within(self, reach: float | Array, first: Array, second: Array) -> "Pairs":
         """Those closer than a reach, one for all or each its own."""
         separation = self.separations(first, second)
         near = (separation**2).sum(axis=0) < np.square(reach)
-        return Pairs(self.first[near], self.second[near], self.image[near])
+        return Pairs(self.first[near], self.second[near], self.image[:, near])
 
 
 class ColloidForces:
-    """Forces between colloids and fluid, among colloids, and of the walls on colloids.
+    """Forces between species and fluid, among species, and of the walls on species.
 
     The pairs are found once per collision. A fluid particle is paired with every colloid that
     could come within the cutoff if neither moved further than an allowance: speed times tau_c,
@@ -56,10 +56,28 @@ class ColloidForces:
     ever missed.
     """
 
-    def __init__(self, scene: Channel) -> None:
-        self._scene = scene
+    def __init__(self, system: System, solvent: Solvent) -> None:
+        self._system = system
+        self._box = system.box
+        self._time = solvent.collision_time
+        self._fluid_particles = solvent.particles
         self._fluid_margin = 1.0
-        self._colloid_margin = 1 / np.sqrt(scene.colloid_mass)
+        self._colloid_margin = 1 / np.sqrt(system.masses.min())
+        names = [species.name for species in system.species]
+        counts = [species.count for species in system.species]
+        self._species = np.repeat(np.arange(len(names)), counts)  # of each colloid
+        with_fluid = system.fluid_interactions()
+        self._with_fluid = [
+            (s, with_fluid[name]) for s, name in enumerate(names) if name in with_fluid
+        ]
+        self._fluid_cutoff = np.zeros(system.particles)
+        for species, potential in self._with_fluid:
+            self._fluid_cutoff[self._species == species] = potential.cutoff
+        self._among = [
+            (names.index(i.first), names.index(i.second), i.potential)
+            for i in system.particle_interactions()
+        ]
+        self._longest_cutoff = max((p.cutoff for *_, p in self._among), default=0.0)
 
     def find_pairs(
         self,
@@ -69,20 +87,22 @@ class ColloidForces:
         colloid_velocities: Array,
     ) -> None:
         """Find the pairs that may interact before tau_c has passed."""
-        time = self._scene.collision_time
-        speed = np.hypot(*fluid_velocities) + self._fluid_margin
-        colloid_speed = np.hypot(*colloid_velocities).max() + self._colloid_margin
+        time = self._time
+        speed = _length(fluid_velocities) + self._fluid_margin
+        colloid_speed = _length(colloid_velocities).max() + self._colloid_margin
         self._colloid_allowance = time * colloid_speed
-        reach = self._scene.colloid_fluid.cutoff + time * (speed + colloid_speed)
-        fluid = _columns_near(fluid_positions, colloid_positions, reach.max(), self._scene.length)
-        self._fluid_pairs = fluid.within(reach[fluid.first], fluid_positions, colloid_positions)
-
-        first, second = np.triu_indices(self._scene.colloids, k=1)
-        image = _image(
-            colloid_positions[0, first] - colloid_positions[0, second], self._scene.length
+        flight = time * (speed + colloid_speed)
+        coupled = np.flatnonzero(self._fluid_cutoff)
+        reach = self._fluid_cutoff.max() + flight.max()
+        near = _columns_near(fluid_positions, colloid_positions, coupled, reach, self._box)
+        self._fluid_pairs = near.within(
+            self._fluid_cutoff[near.second] + flight[near.first], fluid_positions, colloid_positions
         )
+
+        first, second = np.triu_indices(colloid_positions.shape[1], k=1)
+        image = _image(colloid_positions[:, first] - colloid_positions[:, second], self._box)
         self._colloid_pairs = Pairs(first, second, image).within(
-            self._scene.colloid_colloid.cutoff + 2 * self._colloid_allowance,
+            self._longest_cutoff + 2 * self._colloid_allowance,
             colloid_positions,
             colloid_positions,
         )
@@ -94,90 +114,136 @@ class ColloidForces:
 
     def pairs_hold(self, fluid_positions: Array, colloid_positions: Array) -> bool:
         """Whether nothing has moved further than the pairs allow."""
-        moved = np.hypot(*(fluid_positions[:, self._near] - self._near_start))
-        colloids_moved = np.hypot(*(colloid_positions - self._colloid_start))
+        moved = _length(fluid_positions[:, self._near] - self._near_start)
+        colloids_moved = _length(colloid_positions - self._colloid_start)
         return bool(
             (moved <= self._near_allowance).all()
             and (colloids_moved <= self._colloid_allowance).all()
         )
 
     def forces(self, fluid_positions: Array, colloid_positions: Array) -> tuple[Array, Array]:
-        """Forces on the fluid (2, N_f) and on the colloids (2, N_c), gravity left out (3.50).
+        """Forces on the fluid (d, N_f) and on the colloids (d, N_c), drives left out (3.50).
 
         Raises:
             SimulationFault: for a particle deep in a colloid, or a colloid not between the walls.
         """
-        scene = self._scene
+        dimensions, colloids = colloid_positions.shape
+        on_fluid = np.zeros((dimensions, self._fluid_particles))
+        on_colloids = np.zeros((dimensions, colloids))
         pairs = self._fluid_pairs
         separation = pairs.separations(fluid_positions, colloid_positions)
-        r_squared = (separation**2).sum(axis=0)
-        self._check_cores(pairs, r_squared, scene.colloid_fluid.sigma, "fluid particle")
-        force = separation * scene.colloid_fluid.force_over_distance(r_squared)
-        on_fluid = _sums(pairs.first, force, scene.fluid_particles)
-        on_colloids = -_sums(pairs.second, force, scene.colloids)
+        for species, potential in self._with_fluid:
+            own = self._species[pairs.second] == species
+            force = self._force(pairs, separation, own, potential, "fluid particle")
+            on_fluid += _sums(pairs.first[own], force, self._fluid_particles)
+            on_colloids -= _sums(pairs.second[own], force, colloids)
 
         pairs = self._colloid_pairs
-        if pairs.first.size:
-            separation = pairs.separations(colloid_positions, colloid_positions)
-            r_squared = (separation**2).sum(axis=0)
-            self._check_cores(pairs, r_squared, scene.colloid_colloid.sigma, "colloid")
-            force = separation * scene.colloid_colloid.force_over_distance(r_squared)
-            on_colloids += _sums(pairs.first, force, scene.colloids)
-            on_colloids -= _sums(pairs.second, force, scene.colloids)
-
-        lower, upper = colloid_positions[1], scene.width - colloid_positions[1]
-        outside = np.flatnonzero(~((lower > 0) & (upper > 0)))
-        if outside.size:
-            y = colloid_positions[1, outside[0]]
-            raise SimulationFault(
-                f"colloid {outside[0]} is at y = {y}, through a wall: the time step "
-                f"{scene.time_step:g} is too long for its wall potential, or the walls too weak"
-            )
-        from_lower, from_upper = scene.colloid_wall.force([lower, upper])
-        on_colloids[1] += from_lower - from_upper
+        separation = pairs.separations(colloid_positions, colloid_positions)
+        for a, b, potential in self._among:
+            own = self._between(pairs, a, b)
+            if own.any():
+                force = self._force(pairs, separation, own, potential, "colloid")
+                on_colloids += _sums(pairs.first[own], force, colloids)
+                on_colloids -= _sums(pairs.second[own], force, colloids)
+        self._add_walls(colloid_positions, on_colloids)
         return on_fluid, on_colloids
 
     def energy(self, fluid_positions: Array, colloid_positions: Array) -> float:
         """Potential energy of everything that `forces` has [kBT]."""
-        scene = self._scene
-        fluid = self._fluid_pairs.separations(fluid_positions, colloid_positions)
-        colloids = self._colloid_pairs.separations(colloid_positions, colloid_positions)
-        lower, upper = colloid_positions[1], scene.width - colloid_positions[1]
-        return float(
-            scene.colloid_fluid.energy(np.hypot(*fluid)).sum()
-            + scene.colloid_colloid.energy(np.hypot(*colloids)).sum()
-            + scene.colloid_wall.energy(lower).sum()
-            + scene.colloid_wall.energy(upper).sum()
-        )
+        energy = 0.0
+        pairs = self._fluid_pairs
+        distance = _length(pairs.separations(fluid_positions, colloid_positions))
+        for species, potential in self._with_fluid:
+            energy += float(
+                potential.energy(distance[self._species[pairs.second] == species]).sum()
+            )
+        pairs = self._colloid_pairs
+        distance = _length(pairs.separations(colloid_positions, colloid_positions))
+        for a, b, potential in self._among:
+            energy += float(potential.energy(distance[self._between(pairs, a, b)]).sum())
+        for wall in self._system.walls:
+            for name, repulsion in wall.potentials:
+                own = self._of(name)
+                x, size = colloid_positions[wall.axis, own], self._box.sizes[wall.axis]
+                energy += float(repulsion.energy(x if wall.side == "lower" else size - x).sum())
+        return energy
 
-    def _check_cores(self, pairs: Pairs, r_squared: Array, sigma: float, kind: str) -> None:
-        deep = ~(r_squared > (CORE * sigma) ** 2)  # true for NaN
+    def _add_walls(self, colloid_positions: Array, on_colloids: Array) -> None:
+        for axis, (size, periodic) in enumerate(
+            zip(self._box.sizes, self._box.periodic, strict=True)
+        ):
+            x = colloid_positions[axis]
+            outside = np.flatnonzero(~((x > 0) & (x < size)))
+            if not periodic and outside.size:
+                raise SimulationFault(
+                    f"colloid {outside[0]} is at {'xyz'[axis]} = {x[outside[0]]}, through a wall: "
+                    f"the time step {self._system.clock.time_step:g} is too long for its wall "
+                    "potential, or the walls too weak"
+                )
+        for wall in self._system.walls:
+            for name, potential in wall.potentials:
+                own = self._of(name)
+                x, size = colloid_positions[wall.axis, own], self._box.sizes[wall.axis]
+                if wall.side == "lower":
+                    on_colloids[wall.axis, own] += potential.force(x)
+                else:
+                    on_colloids[wall.axis, own] -= potential.force(size - x)
+
+    def _of(self, name: str) -> NDArray[np.bool_]:
+        """Which colloids are of a species."""
+        names = [species.name for species in self._system.species]
+        return np.asarray(self._species == names.index(name))
+
+    def _between(self, pairs: Pairs, a: int, b: int) -> NDArray[np.bool_]:
+        """Which pairs are of these two species."""
+        first, second = self._species[pairs.first], self._species[pairs.second]
+        return np.asarray(((first == a) & (second == b)) | ((first == b) & (second == a)))
+
+    def _force(
+        self,
+        pairs: Pairs,
+        separation: Array,
+        own: NDArray[np.bool_],
+        potential: PairPotential,
+        kind: str,
+    ) -> Array:
+        """Forces (d, own pairs) on the first of each pair."""
+        assert isinstance(potential, RepulsiveMie), "the engine's problems() has checked it"
+        separation = separation[:, own]
+        r_squared = (separation**2).sum(axis=0)
+        deep = ~(r_squared > (CORE * potential.sigma) ** 2)  # true for NaN
         if deep.any():
             i = np.flatnonzero(deep)[0]
             raise SimulationFault(
-                f"{kind} {pairs.first[i]} is {np.sqrt(r_squared[i]):.4g} from the centre of "
-                f"colloid {pairs.second[i]}, inside its core: the time step "
-                f"{self._scene.time_step:g} is too long"
+                f"{kind} {pairs.first[own][i]} is {np.sqrt(r_squared[i]):.4g} from the centre of "
+                f"colloid {pairs.second[own][i]}, inside its core: the time step "
+                f"{self._system.clock.time_step:g} is too long"
             )
+        return separation * potential.force_over_distance(r_squared)
+
+
+def _length(vectors: Array) -> Array:
+    """Lengths (N,) of vectors (d, N)."""
+    return np.asarray(np.sqrt((vectors**2).sum(axis=0)))
 
 
 def _sums(indices: Indices, forces: Array, count: int) -> Array:
-    """Forces (2, pairs) summed for each particle (2, count)."""
-    sums = np.empty((2, count))
+    """Forces (d, pairs) summed for each particle (d, count)."""
+    sums = np.empty((len(forces), count))
     for axis, force in enumerate(forces):
         sums[axis] = np.bincount(indices, weights=force, minlength=count)
     return sums
 
 
-def _image(separation: Array, length: float) -> Array:
-    """What to add to separations along x to make them those of the nearest images."""
-    image: Array = -length * np.round(separation / length)
-    return image
+def _image(separation: Array, box: Box) -> Array:
+    """What to add to separations (d, pairs) to make them those of the nearest images."""
+    return np.asarray(box.nearest_image(separation.T).T - separation)
 
 
-def _columns_near(fluid: Array, colloids: Array, reach: float, length: float) -> Pairs:
-    """Pairs of each colloid with all the fluid in the columns of width a0 within reach of it."""
-    columns = round(length)
+def _columns_near(fluid: Array, colloids: Array, coupled: Indices, reach: float, box: Box) -> Pairs:
+    """Pairs of each coupled colloid with all the fluid in slabs of width a0 within reach in x."""
+    columns = round(box.sizes[0])
     half = int(np.ceil(reach))
     of_fluid = np.floor(fluid[0]).astype(np.intp) % columns
     by_column = np.argsort(of_fluid, kind="stable")
@@ -185,9 +251,9 @@ def _columns_near(fluid: Array, colloids: Array, reach: float, length: float) ->
     start = np.cumsum(occupation) - occupation
 
     offsets = np.arange(min(2 * half + 1, columns)) - half
-    near = (np.floor(colloids[0]).astype(np.intp)[:, None] + offsets) % columns
+    near = (np.floor(colloids[0, coupled]).astype(np.intp)[:, None] + offsets) % columns
     counts = occupation[near].ravel()
-    second = np.repeat(np.repeat(np.arange(colloids.shape[1]), len(offsets)), counts)
+    second = np.repeat(np.repeat(coupled, len(offsets)), counts)
     within = np.arange(len(second)) - np.repeat(np.cumsum(counts) - counts, counts)
     first = by_column[np.repeat(start[near].ravel(), counts) + within]
-    return Pairs(first, second, _image(fluid[0, first] - colloids[0, second], length))
+    return Pairs(first, second, _image(fluid[:, first] - colloids[:, second], box))

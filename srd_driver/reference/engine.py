@@ -10,7 +10,8 @@ from typing import Self
 import numpy as np
 from numpy.typing import NDArray
 
-from lammps_inputs import Bulk, Channel, InitialState, Scene, initial_state
+from lammps_inputs import InitialState, Scene, initial_state
+from lammps_inputs.system import FLUID
 from srd_driver.reference import random_solvent, thermostats
 from srd_driver.reference.collision import Cells, collide, grid_shape, grid_shift
 from srd_driver.reference.colloids import ColloidForces
@@ -27,16 +28,20 @@ class ReferenceEngine:
 
     Args:
         scene: what to simulate.
-        state: where to start; by default `initial_state(scene)`.
+        state: where to start; by default the scene's own initial state.
 
     Attributes:
         scene: what is simulated.
         collisions: collisions done so far.
-        colloid_images: box lengths along x to add to the wrapped colloid positions (N_c,).
+        colloid_images: box lengths to add to the wrapped colloid positions (N_c, d).
+
+    Colloids are the particles of all species, in their order.
     """
 
     def __init__(self, scene: Scene, state: InitialState | None = None) -> None:
-        state = state or initial_state(scene)
+        system, solvent = scene.system, scene.system.solvent
+        assert solvent is not None, "the engine's problems() has checked it"
+        state = state or initial_state(system, scene.seed)
         self.scene = scene
         self.collisions = 0
         self._step = 0
@@ -44,21 +49,29 @@ class ReferenceEngine:
         self._fluid_velocities = np.array(state.fluid_velocities.T, order="C")
         self._colloid_positions = np.array(state.colloid_positions.T, order="C")
         self._colloid_velocities = np.array(state.colloid_velocities.T, order="C")
-        self.colloid_images = np.zeros(scene.colloids, dtype=np.int64)
+        self.colloid_images = np.zeros((system.particles, system.box.dimensions), dtype=np.int64)
 
-        self._shape = grid_shape(scene.box, scene.periodic)
-        self._width = scene.width if scene.walls else None
-        self._field = np.zeros((scene.dimensions, 1))
-        self._field[0] = scene.fluid_gravity
-        self._coupling = ColloidForces(scene) if isinstance(scene, Channel) else None
-        self._colloid_mass = scene.colloid_mass if isinstance(scene, Channel) else 0.0
-        self._colloid_field = np.zeros((2, 1))
-        self._colloid_field[0] = scene.gravity if isinstance(scene, Channel) else 0.0
+        self._system, self._solvent, self._box = system, solvent, system.box
+        self._shape = grid_shape(self._box.sizes, self._box.periodic)
+        self._width = self._box.sizes[1] if system.walls else None
+        dimensions = self._box.dimensions
+        self._field = np.zeros((dimensions, 1))
+        for drive in system.drives_on(FLUID):
+            self._field[:, 0] += drive.acceleration[:dimensions]
+        self._masses = system.masses
+        self._colloid_field = np.zeros((dimensions, system.particles))
+        first = 0
+        for species in system.species:
+            for drive in system.drives_on(species.name):
+                own = slice(first, first + species.count)
+                self._colloid_field[:, own] += drive.acceleration[:dimensions, np.newaxis]
+            first += species.count
+        self._coupling = ColloidForces(system, solvent) if system.particles else None
 
     @property
     def time(self) -> float:
         """Simulated time [t0]."""
-        return self.collisions * self.scene.collision_time
+        return self.collisions * self._solvent.collision_time
 
     @property
     def fluid_positions(self) -> Array:
@@ -72,12 +85,12 @@ class ReferenceEngine:
 
     @property
     def colloid_positions(self) -> Array:
-        """(N_c, 2) wrapped into the box, live [a0]."""
+        """(N_c, d) wrapped into the box, live [a0]."""
         return self._colloid_positions.T
 
     @property
     def colloid_velocities(self) -> Array:
-        """(N_c, 2) live [a0/t0]."""
+        """(N_c, d) live [a0/t0]."""
         return self._colloid_velocities.T
 
     def advance(self, collisions: int) -> None:
@@ -86,7 +99,7 @@ class ReferenceEngine:
         Raises:
             SimulationFault: naming the particle and the step, when the state is broken.
         """
-        self._step = self.collisions * self.scene.steps_per_collision
+        self._step = self.collisions * self._system.clock.steps_per_collision
         try:
             self._check()
             for _ in range(collisions):
@@ -104,11 +117,8 @@ class ReferenceEngine:
     def mean_velocity(self) -> Array:
         """P_t / M_t of all particles (4.8, 4.9), shape (d,) [a0/t0]."""
         momentum = self._fluid_velocities.sum(axis=1)
-        mass = float(self._fluid_velocities.shape[1])
-        if self._coupling is not None:
-            momentum = momentum + self._colloid_mass * self._colloid_velocities.sum(axis=1)
-            mass += self._colloid_mass * self._colloid_velocities.shape[1]
-        mean: Array = momentum / mass
+        momentum = momentum + (self._masses * self._colloid_velocities).sum(axis=1)
+        mean: Array = momentum / (self._fluid_velocities.shape[1] + self._masses.sum())
         return mean
 
     def fluid_temperature(self) -> float:
@@ -126,7 +136,7 @@ class ReferenceEngine:
         """Kinetic energy and the potential energy of the colloids' interactions [kBT]."""
         energy = 0.5 * float(np.sum(self._fluid_velocities**2))
         if self._coupling is not None:
-            energy += 0.5 * self._colloid_mass * float(np.sum(self._colloid_velocities**2))
+            energy += 0.5 * float(np.sum(self._masses * self._colloid_velocities**2))
             self._find_pairs(self._coupling)
             energy += self._coupling.energy(self._fluid_positions, self._colloid_positions)
         return energy
@@ -176,16 +186,16 @@ class ReferenceEngine:
             self._fluid_positions,
             self._fluid_velocities,
             self._field,
-            self.scene.collision_time,
+            self._solvent.collision_time,
             self._width,
         )
 
     def _molecular_dynamics(self, coupling: ColloidForces) -> None:
         """Velocity Verlet of colloids and fluid through tau_c (3.45, 3.46, 3.51, 3.52)."""
-        time = self.scene.time_step
+        time = self._system.clock.time_step
         self._find_pairs(coupling)
         fluid, colloids = self._accelerations(coupling)
-        for _ in range(self.scene.steps_per_collision):
+        for _ in range(self._system.clock.steps_per_collision):
             self._step += 1
             stream(self._fluid_positions, self._fluid_velocities, fluid, time, self._width)
             self._colloid_positions += time * (self._colloid_velocities + 0.5 * time * colloids)
@@ -198,47 +208,46 @@ class ReferenceEngine:
             self._colloid_velocities += 0.5 * time * (old_colloids + colloids)
 
     def _accelerations(self, coupling: ColloidForces) -> tuple[Array, Array]:
-        """Of the fluid (2, N_f) and of the colloids (2, N_c), fields included (3.50)."""
+        """Of the fluid (d, N_f) and of the colloids (d, N_c), drives included (3.50)."""
         on_fluid, on_colloids = coupling.forces(self._fluid_positions, self._colloid_positions)
-        return on_fluid + self._field, on_colloids / self._colloid_mass + self._colloid_field
+        return on_fluid + self._field, on_colloids / self._masses + self._colloid_field
 
     def _wrap(self) -> None:
-        """Bring everything back into the periodic box, and count the colloids' turns."""
+        """Bring everything back into the periodic box, and count the colloids' box lengths."""
         for axis, (size, periodic) in enumerate(
-            zip(self.scene.box, self.scene.periodic, strict=True)
+            zip(self._box.sizes, self._box.periodic, strict=True)
         ):
             if periodic:
                 _wrap(self._fluid_positions[axis], size)
-        self.colloid_images += _wrap(self._colloid_positions[0], self.scene.length)
+                self.colloid_images[:, axis] += _wrap(self._colloid_positions[axis], size)
 
     def _collide(self) -> None:
         """The collision, the thermostat and the random solvent, on one shifted grid."""
-        scene, velocities = self.scene, self._fluid_velocities
-        random = CounterRandom(scene.seed, self.collisions)
-        if scene.hydrodynamics == "bath":
+        solvent, velocities = self._solvent, self._fluid_velocities
+        random = CounterRandom(self.scene.seed, self.collisions)
+        if solvent.hydrodynamics == "bath":
             random_solvent.bath(velocities, random)
             return
-        shift = grid_shift(random, scene.dimensions)
-        cells = Cells.sort(self._fluid_positions, shift, self._shape, scene.periodic)
+        shift = grid_shift(random, self._box.dimensions)
+        cells = Cells.sort(self._fluid_positions, shift, self._shape, self._box.periodic)
         if self._width is None:
             mean = cells.mean_velocity(velocities)
         else:
             cut = cut_cells(cells, shift, self._width)
-            mean = mean_with_virtual_particles(velocities, cells, cut, scene.density, random)
-        rotation = scene.rotation if isinstance(scene, Bulk) else "coordinate_axes"
-        collide(velocities, cells, mean, scene.angle, rotation, random)
+            mean = mean_with_virtual_particles(velocities, cells, cut, solvent.density, random)
+        collide(velocities, cells, mean, solvent.angle, solvent.rotation, random)
 
-        if scene.thermostat == "layer":
+        if solvent.thermostat == "layer":
             thermostats.layer(velocities, cells)
-        elif scene.thermostat == "monte_carlo":
+        elif solvent.thermostat == "monte_carlo":
             thermostats.monte_carlo(velocities, cells, random)
-        elif scene.thermostat == "maxwell_boltzmann":
+        elif solvent.thermostat == "maxwell_boltzmann":
             thermostats.maxwell_boltzmann(velocities, cells, random)
-        elif scene.thermostat == "rescale":
+        elif solvent.thermostat == "rescale":
             thermostats.rescale(velocities)
-        elif scene.thermostat == "andersen":
-            thermostats.andersen(velocities, scene.collision_time, random)
-        if scene.hydrodynamics == "shuffle":
+        elif solvent.thermostat == "andersen":
+            thermostats.andersen(velocities, solvent.collision_time, random)
+        if solvent.hydrodynamics == "shuffle":
             random_solvent.shuffle(velocities, random)
 
     def _check(self) -> None:
@@ -265,7 +274,7 @@ class ReferenceEngine:
 
 def _wrap(coordinates: Array, size: float) -> NDArray[np.int64]:
     """Coordinates into [0, size) in place; the box lengths taken off each."""
-    turns = np.floor(coordinates / size)
-    coordinates -= size * turns
+    lengths = np.floor(coordinates / size)
+    coordinates -= size * lengths
     coordinates[coordinates >= size] = 0.0  # a negative rounding error was rounded up to the size
-    return turns.astype(np.int64)
+    return lengths.astype(np.int64)

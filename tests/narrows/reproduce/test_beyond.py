@@ -6,9 +6,9 @@ import pytest
 from analysis.blocking import Estimate
 from analysis.flux import fit_quality
 from lammps_inputs import Channel
-from narrows.reproduce.tabatabaei_2009 import beyond_flux
-from narrows.reproduce.tabatabaei_2009.beyond_flux import Constants, Law
-from narrows.reproduce.tabatabaei_2009.chain_ends import one_law, rate, two_laws
+from narrows.papers.tabatabaei_2009 import beyond_flux
+from narrows.papers.tabatabaei_2009.beyond_flux import Constants, Law
+from narrows.papers.tabatabaei_2009.chain_ends import one_law, rate, two_laws
 
 CONSTANTS = Constants(intercept=0.02, slope=5.8, coupling=0.31, permeability=0.2)
 

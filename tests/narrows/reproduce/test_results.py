@@ -3,8 +3,8 @@ import json
 import pytest
 
 from analysis.blocking import Estimate
-from narrows.reproduce.page import count_verdicts
-from narrows.reproduce.results import PaperNumber, claimed, compared, measured, write_results
+from narrows.papers.page import count_verdicts
+from narrows.papers.results import PaperNumber, claimed, compared, measured, write_results
 
 
 @pytest.mark.parametrize(

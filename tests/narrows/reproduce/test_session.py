@@ -11,12 +11,12 @@ import time
 
 import numpy as np
 
-from narrows.reproduce import session
-from narrows.reproduce.paper_figure import PaperFigure
-from narrows.reproduce.session import Plan, carry_out
+from narrows.papers import session
+from narrows.papers.figure import PaperFigure
+from narrows.papers.session import Plan, carry_out
 from srd_driver.sweep import Failure
 from tests.conftest import ROOT
-from tests.narrows.reproduce.tiny import paper
+from tests.narrows.papers.tiny import paper
 
 
 def plan_of(out, duration=3.0):
@@ -89,7 +89,7 @@ def test_a_figure_that_cannot_be_made_costs_itself_only(tmp_path):
 
 
 def test_goes_on_after_kill_9(tmp_path):
-    words = [sys.executable, "-m", "tests.narrows.reproduce.tiny", str(tmp_path), "60"]
+    words = [sys.executable, "-m", "tests.narrows.papers.tiny", str(tmp_path), "60"]
     process = subprocess.Popen(words, cwd=ROOT, env=os.environ | {"PYTHONPATH": str(ROOT)})
     plan = plan_of(tmp_path, duration=60.0)
     begun = [run.folder / "observables.dat" for run in plan.runs]

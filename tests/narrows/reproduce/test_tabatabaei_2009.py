@@ -8,18 +8,18 @@ import pytest
 from analysis.blocking import Estimate
 from lammps_inputs.deck import check_engine
 from lattice.shocks import end_rates, hopping_rates, random_walk_residuals
-from narrows.reproduce.session import Plan, run_of, select
-from narrows.reproduce.tabatabaei_2009 import PAPER
-from narrows.reproduce.tabatabaei_2009.few_colloids import crowds
-from narrows.reproduce.tabatabaei_2009.lattice_shocks import SHOCKS
-from narrows.reproduce.tabatabaei_2009.state_points import (
+from narrows.papers.session import Plan, run_of, select
+from narrows.papers.tabatabaei_2009 import PAPER
+from narrows.papers.tabatabaei_2009.few_colloids import crowds
+from narrows.papers.tabatabaei_2009.lattice_shocks import SHOCKS
+from narrows.papers.tabatabaei_2009.state_points import (
     Speed,
     difference,
     fit,
     point,
     scenes_of,
 )
-from narrows.reproduce.tabatabaei_2009.volume_fraction import mean_above_line
+from narrows.papers.tabatabaei_2009.volume_fraction import mean_above_line
 
 FIGURES = [
     *("2.1", "2.2", "3.6", "3.7", "4.3", "4.4", "4.5", "4.6", "4.7", "4.8", "4.9", "4.10"),

@@ -6,10 +6,10 @@ from pathlib import Path
 from analysis import RunDirectory
 from analysis.blocking import Estimate
 from lammps_inputs import Channel
-from narrows.reproduce.drawing import one_panel
-from narrows.reproduce.paper_figure import Outcome, Paper, PaperFigure
-from narrows.reproduce.results import PaperNumber, compared
-from narrows.reproduce.session import Plan, carry_out
+from narrows.papers.drawing import one_panel
+from narrows.papers.figure import Outcome, Paper, PaperFigure
+from narrows.papers.results import PaperNumber, compared
+from narrows.papers.session import Plan, carry_out
 
 
 def scene(seed, duration=3.0):

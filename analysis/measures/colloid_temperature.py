@@ -1,0 +1,20 @@
+"""Temperature of the colloids, from their velocities across the channel."""
+
+from analysis import blocking
+from analysis.findings import Findings
+from analysis.health import temperature_warnings
+from analysis.measures.settling_speed import sampled_frames
+from analysis.run_directory import RunDirectory
+from analysis.temperature import colloid_temperature
+
+TOLERANCE = 0.05
+
+
+def measure(run: RunDirectory) -> Findings:
+    """Mean over time; a warning when it is off kBT = 1."""
+    velocities = run.particles().velocities[sampled_frames(run)]
+    temperature = blocking.mean(colloid_temperature(velocities, run.species().mass))
+    return Findings(
+        {"colloid_temperature": temperature.as_json()},
+        warnings=temperature_warnings("colloids", temperature, TOLERANCE),
+    )

@@ -1,0 +1,46 @@
+"""Pair correlation of the colloids along the channel."""
+
+import numpy as np
+from matplotlib.figure import Figure
+from numpy.typing import NDArray
+
+from analysis.drawing import one_panel
+from analysis.findings import Findings
+from analysis.measures.settling_speed import sampled_frames
+from analysis.pair_correlation import pair_correlation
+from analysis.run_directory import RunDirectory
+
+Array = NDArray[np.float64]
+
+BIN_WIDTH = 0.1  # [a0]; the 48-24 repulsion is about that steep
+
+
+def measure(run: RunDirectory) -> Findings:
+    """Place and height of the highest peak of g(x)."""
+    x = run.particles().positions[sampled_frames(run)][:, :, 0]
+    distance, g = pair_correlation(x, run.length, BIN_WIDTH)
+    peak = int(np.argmax(g))
+    entry = {
+        "peak_position": float(distance[peak]),
+        "peak_height": float(g[peak]),
+        "bin_width": float(distance[1] - distance[0]),
+    }
+    picture = draw(distance, g, 2 * run.species().radius)
+    return Findings({"pair_correlation": entry}, {"pair_correlation.png": picture})
+
+
+def draw(distance: Array, g: Array, diameter: float) -> Figure:
+    """g(x) along the channel.
+
+    Args:
+        distance: (bins,) [a0].
+        g: (bins,).
+        diameter: of a colloid [a0].
+    """
+    figure, axes = one_panel("distance along the channel $x$ [$a_0$]", "pair correlation $g(x)$")
+    axes.plot(distance, g, drawstyle="steps-mid", linewidth=1)
+    axes.axhline(1, color="0.7", linewidth=0.8)
+    axes.axvline(diameter, color="0.3", linestyle=":", label="colloid diameter")
+    axes.set_ylim(bottom=0)
+    axes.legend()
+    return figure

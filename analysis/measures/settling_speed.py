@@ -1,0 +1,56 @@
+"""Settling speed of the colloids, at rest and in the co-moving frame."""
+
+import numpy as np
+from matplotlib.figure import Figure
+from numpy.typing import NDArray
+
+from analysis import blocking
+from analysis.drawing import TIME, mark_equilibration, one_panel
+from analysis.findings import Findings
+from analysis.run_directory import RunDirectory
+from analysis.settling import SettlingSeries, settling_series
+from run_files import RunDirectoryError
+
+
+def measure(run: RunDirectory) -> Findings:
+    """Means over time in both frames, and their history."""
+    sampled_frames(run)
+    series = settling_series(run)
+    moving, rest = (blocking.mean(v[series.used]) for v in (series.co_moving, series.rest))
+    return Findings(
+        {"settling_speed": moving.as_json(), "settling_speed_rest": rest.as_json()},
+        {"settling_speed.png": draw(series, run.equilibration_time)},
+    )
+
+
+def sampled_frames(run: RunDirectory) -> NDArray[np.bool_]:
+    """Which frames of the trajectory lie after the equilibration, (T,).
+
+    Raises:
+        RunDirectoryError: when fewer than two do.
+    """
+    steps = run.particles().steps
+    used = steps >= run.equilibration_steps
+    if used.sum() < 2:
+        raise RunDirectoryError(
+            f"{run.path / 'trajectory.lammpsdump'}: no two frames after the equilibration: it ends "
+            f"at step {run.equilibration_steps}, the trajectory at step {steps[-1]}"
+        )
+    return np.asarray(used)
+
+
+def draw(series: SettlingSeries, equilibration: float) -> Figure:
+    """Settling speed against time: each interval of the co-moving frame, running means of both."""
+    times, used = series.times, series.times > equilibration
+    figure, axes = one_panel(TIME, "settling speed $v_s$ [$a_0/t_0$]")
+    axes.plot(times, series.co_moving, color="0.8", linewidth=0.6, label="co-moving, each interval")
+    count = np.arange(1, used.sum() + 1)
+    for speed, name, colour in (
+        (series.co_moving, "co-moving", "C0"),
+        (series.rest, "at rest", "C1"),
+    ):
+        running = np.cumsum(speed[used]) / count
+        axes.plot(times[used], running, color=colour, label=f"{name}, running mean")
+    mark_equilibration(axes, equilibration)
+    axes.legend()
+    return figure

@@ -1,0 +1,59 @@
+"""Flow of the fluid between walls: its profile, mean velocity and Reynolds number."""
+
+import numpy as np
+from matplotlib.figure import Figure
+from numpy.typing import NDArray
+
+from analysis import blocking, flow
+from analysis.blocking import Estimate
+from analysis.drawing import one_panel
+from analysis.findings import Findings
+from analysis.run_directory import RunDirectory
+
+Array = NDArray[np.float64]
+
+
+def measure(run: RunDirectory) -> Findings:
+    """Mean velocity and Reynolds number (4.11), and the mean profile."""
+    return slit_flow(run, fit=None)
+
+
+def slit_flow(run: RunDirectory, fit: tuple[float, float] | None) -> Findings:
+    """The same, with a fitted parabola of maximum and wall velocity in the figure."""
+    fluid = run.profile()
+    used = run.sampled(fluid.steps)
+    counts, velocity = fluid.counts[used], fluid.velocity_x[used]
+    mean_velocity = blocking.mean(flow.mean_velocity(counts, velocity))
+    theory = run.solvent.viscosity_theory
+    if theory is None:
+        reynolds = Estimate(None, None, "kinetic theory has no viscosity for this fluid")
+    else:
+        reynolds = mean_velocity.scaled(flow.reynolds_number(1.0, run.width, theory))
+    profile = flow.momentum_profile(counts, velocity).mean(axis=0)
+    return Findings(
+        {"fluid_velocity": mean_velocity.as_json(), "reynolds_number": reynolds.as_json()},
+        {"profile.png": draw(fluid.y, profile, run.width, fit)},
+    )
+
+
+def draw(y: Array, velocity: Array, width: float, fit: tuple[float, float] | None) -> Figure:
+    """Mean velocity of the fluid across the slit, with the fitted parabola.
+
+    Args:
+        y: bin centres, (bins,) [a0].
+        velocity: time mean in each bin, (bins,) [a0/t0].
+        width: of the slit [a0].
+        fit: v_max and v_wall [a0/t0]; None where no parabola is expected.
+    """
+    figure, axes = one_panel("across the slit $y$ [$a_0$]", "fluid velocity $v_x$ [$a_0/t_0$]")
+    axes.plot(y, velocity, "o", markersize=4, label="mean over each bin")
+    if fit is not None:
+        v_max, v_wall = fit
+        fine = np.linspace(0, width, 400)
+        shape = flow.parabola(fine, width)
+        label = f"parabola, $v_{{max}}$ = {v_max:.4g}, $v_{{wall}}$ = {v_wall:.2g}"
+        axes.plot(fine, v_wall + (v_max - v_wall) * shape, label=label)
+    for wall in (0.0, width):
+        axes.axvline(wall, color="0.3", linewidth=2)
+    axes.legend()
+    return figure

@@ -1,0 +1,63 @@
+"""Zigzag of the chain: of the whole, and about each colloid (tabatabaei-2009, 4.5)."""
+
+import numpy as np
+from matplotlib.figure import Figure
+from matplotlib.ticker import MaxNLocator
+from numpy.typing import NDArray
+
+from analysis import blocking, chain
+from analysis.blocking import root
+from analysis.drawing import TIME, mark_equilibration
+from analysis.findings import Findings
+from analysis.measures.settling_speed import sampled_frames
+from analysis.run_directory import RunDirectory
+
+Array = NDArray[np.float64]
+
+
+def measure(run: RunDirectory) -> Findings:
+    """Amplitudes, beside what unrelated displacements would give, and their history."""
+    used, y = sampled_frames(run), chain.chain_of(run).y
+    amplitude, local = chain.zigzag_amplitude(y, run.width), chain.local_zigzag(y)
+    displacement = float(np.sqrt(((y[used] - run.width / 2) ** 2).mean()))
+    entry = {
+        "amplitude_rms": root(blocking.mean(amplitude[used] ** 2)).as_json(),
+        "displacement_rms": displacement,
+        "uncorrelated_rms": displacement / np.sqrt(y.shape[1]),
+        "local_rms": np.sqrt((local[used] ** 2).mean(axis=0)).tolist(),
+    }
+    picture = draw(run.times(run.particles().steps), amplitude, local, run.equilibration_time)
+    return Findings({"zigzag": entry}, {"zigzag.png": picture})
+
+
+def draw(times: Array, amplitude: Array, local: Array, equilibration: float) -> Figure:
+    """Zigzag of the whole chain against time, and about each colloid.
+
+    Args:
+        times: (T,) [t0].
+        amplitude: of the whole chain, (T,) [a0].
+        local: about each inner colloid, head first, (T, N - 2) [a0].
+        equilibration: time averages leave out [t0].
+    """
+    figure = Figure(figsize=(7, 6), layout="constrained")
+    above, below = figure.subplots(2, 1, sharex=True)
+    above.plot(times, amplitude, linewidth=0.8)
+    above.axhline(0, color="0.7", linewidth=0.8)
+    above.set_ylabel("zigzag amplitude [$a_0$]")
+    mark_equilibration(above, equilibration)
+    limit = float(np.abs(local).max()) or 1.0
+    image = below.imshow(
+        local.T,
+        extent=(times[0], times[-1], 1.5, local.shape[1] + 1.5),
+        origin="lower",
+        aspect="auto",
+        interpolation="none",
+        cmap="RdBu_r",
+        vmin=-limit,
+        vmax=limit,
+    )
+    below.yaxis.set_major_locator(MaxNLocator(integer=True, min_n_ticks=1))
+    below.set_ylabel("colloid, 1 is the head")
+    below.set_xlabel(TIME)
+    figure.colorbar(image, ax=below, label="local zigzag [$a_0$]")
+    return figure

@@ -1,0 +1,44 @@
+"""The particles of a run: unwrapped positions and velocities of every frame."""
+
+from typing import Any
+
+import numpy as np
+from MDAnalysis.analysis.base import AnalysisBase
+
+
+class ParticleTrajectory(AnalysisBase):  # type: ignore[misc]  # MDAnalysis has no types
+    """Collects the particles of each frame in float64.
+
+    MDAnalysis keeps positions in float32. Wrapped ones are therefore unwrapped here, with the image
+    counts: far down a long channel its own unwrapping would lose digits.
+
+    Args:
+        universe: of a `trajectory.lammpsdump`, as `RunDirectory.universe` opens it, with image
+            counts as additional columns `ix iy iz`.
+        dimension: space dimensions d, 2 or 3.
+
+    After `run()`, `results` holds:
+        steps: engine steps, (T,).
+        positions: unwrapped centres, from the lower corner of the box, (T, N, d) [a0].
+        velocities: (T, N, d) [a0/t0].
+    """
+
+    def __init__(self, universe: Any, dimension: int) -> None:
+        super().__init__(universe.trajectory)
+        self._atoms = universe.atoms
+        self._dimension = dimension
+
+    def _prepare(self) -> None:
+        shape = (self.n_frames, self._atoms.n_atoms, self._dimension)
+        self.results.steps = np.empty(self.n_frames, dtype=np.int64)
+        self.results.positions = np.empty(shape)
+        self.results.velocities = np.empty(shape)
+
+    def _single_frame(self) -> None:
+        frame, axes = self._frame_index, slice(0, self._dimension)
+        data = self._ts.data
+        images = np.column_stack([data[axis] for axis in ("ix", "iy", "iz")])[:, axes]
+        box = self._ts.dimensions[axes].astype(float)
+        self.results.steps[frame] = data["step"]
+        self.results.positions[frame] = self._atoms.positions[:, axes] + images * box
+        self.results.velocities[frame] = self._atoms.velocities[:, axes]

@@ -1,0 +1,35 @@
+"""Engines, one file each: what an engine writes for each part of a system, or refuses.
+
+A file here that has an `ENGINE` is an engine, without being listed anywhere.
+"""
+
+import importlib
+import pkgutil
+from functools import cache
+
+from lammps_inputs.engines.engine import Engine
+from lammps_inputs.scene import SceneError
+
+DEFAULT = "mpc"
+
+
+@cache
+def engines() -> dict[str, Engine]:
+    """All engines by name, the default one first."""
+    modules = (
+        importlib.import_module(f"{__name__}.{file.name}")
+        for file in pkgutil.iter_modules(__path__)
+    )
+    known: list[Engine] = [module.ENGINE for module in modules if hasattr(module, "ENGINE")]
+    return {each.name: each for each in sorted(known, key=lambda e: (e.name != DEFAULT, e.name))}
+
+
+def engine_named(name: str) -> Engine:
+    """The engine of that name.
+
+    Raises:
+        SceneError: for an unknown name.
+    """
+    if name not in engines():
+        raise SceneError.of_field("engine", name, f"must be one of {', '.join(engines())}")
+    return engines()[name]

@@ -1,0 +1,107 @@
+"""What an engine says of a system before it runs, and what it writes of one."""
+
+from abc import ABC, abstractmethod
+from collections.abc import Iterator
+from dataclasses import dataclass
+from pathlib import Path
+from typing import ClassVar
+
+from lammps_inputs.initial_state import InitialState
+from lammps_inputs.system import SIZES, Motion, PairPotential, System, WallPotential
+
+
+@dataclass(frozen=True)
+class Start:
+    """Where a deck starts: from `state.data` at step 0, or from a checkpoint at its step."""
+
+    step: int = 0
+    checkpoint: str | None = None
+
+
+class Engine(ABC):
+    """An engine: the parts that it knows, and what else keeps it from running a system.
+
+    Attributes:
+        name: on the command line.
+        plugin: whether LAMMPS needs our compiled styles for it.
+        processes: whether it runs under mpirun.
+        pair_potentials, wall_potentials, motions: classes of the parts that it knows.
+    """
+
+    name: ClassVar[str]
+    plugin: ClassVar[bool] = False
+    processes: ClassVar[bool] = True
+    pair_potentials: ClassVar[tuple[type[PairPotential], ...]]
+    wall_potentials: ClassVar[tuple[type[WallPotential], ...]]
+    motions: ClassVar[tuple[type[Motion], ...]]
+
+    @abstractmethod
+    def problems(self, system: System) -> Iterator[str]:
+        """What it cannot do of a system, one line each: field or part, value, what is allowed."""
+
+    def warnings(self, system: System) -> Iterator[str]:
+        """What it does inaccurately, one line each."""
+        yield from ()
+
+    def seeds(self, seed: int, step: int) -> dict[str, int]:
+        """Its random seeds, by name, for a start at a step."""
+        return {"seed": seed}
+
+    def unknown_parts(self, system: System) -> Iterator[str]:
+        """One line for each part of a class that the engine does not know."""
+        for interaction in system.interactions:
+            if not isinstance(interaction.potential, self.pair_potentials):
+                pair = f"{interaction.first} and {interaction.second}"
+                yield f"{interaction.potential!r} between {pair}: engine {self.name} has no such"
+        for wall in system.walls:
+            for name, potential in wall.potentials:
+                if not isinstance(potential, self.wall_potentials):
+                    yield f"{potential!r} of a wall for {name}: engine {self.name} has no such"
+        if not isinstance(system.motion, self.motions):
+            yield f"{system.motion!r}: engine {self.name} has no such motion"
+
+    def needs_solvent(self, system: System) -> Iterator[str]:
+        """A line where there is no fluid."""
+        if system.solvent is None:
+            yield f"engine = {self.name!r}: it is a fluid, and the scene has none; use 'md'"
+
+    def needs_slit_or_periodic(self, system: System) -> Iterator[str]:
+        """A line for each axis that is neither periodic nor, across y, between two walls."""
+        for axis, periodic in enumerate(system.box.periodic):
+            sides = sorted(wall.side for wall in system.walls_on(axis))
+            if sides != ([] if periodic else ["lower", "upper"]) or (sides and axis != 1):
+                yield (
+                    f"walls across the {SIZES[axis]}: engine {self.name} needs periodic axes, or "
+                    "across the width a wall on either side"
+                )
+
+
+class LammpsEngine(Engine):
+    """An engine that LAMMPS runs: the lines of its decks, section by section.
+
+    `deck.py` has the order of the sections. Lines have no newline; an empty line parts blocks.
+    """
+
+    @abstractmethod
+    def atoms(self, system: System, start: Start) -> Iterator[str]:
+        """Atom style, the state, groups."""
+
+    @abstractmethod
+    def interactions(self, system: System) -> Iterator[str]:
+        """Pair styles, neighbours, ghosts."""
+
+    @abstractmethod
+    def motion(self, system: System) -> Iterator[str]:
+        """What moves and pulls the particles, and walls and drives."""
+
+    def solvent(self, system: System, start: Start) -> Iterator[str]:
+        """The fluid."""
+        yield from ()
+
+    @abstractmethod
+    def averages(self, system: System, start: Start) -> Iterator[str]:
+        """The variables that tables average, and what computes profiles."""
+
+    @abstractmethod
+    def write(self, system: System, state: InitialState, title: str, directory: Path) -> None:
+        """What the input script reads."""

@@ -1,0 +1,86 @@
+"""Plain molecular dynamics by LAMMPS's own styles: species without a solvent."""
+
+from collections.abc import Iterator
+from pathlib import Path
+from typing import ClassVar
+
+from lammps_inputs.engines import lammps
+from lammps_inputs.engines.engine import LammpsEngine, Start
+from lammps_inputs.initial_state import InitialState
+from lammps_inputs.potentials.integrated_wall import IntegratedWall
+from lammps_inputs.potentials.repulsive_mie import RepulsiveMie
+from lammps_inputs.system import SIZES, System, VelocityVerlet
+
+SKIN = 0.3  # of the neighbour list [a0]
+
+EXPRESSIONS = {
+    "temperature": "temp",
+    "potential_energy": "pe/atoms",
+    "mean_velocity_x": "vcm(all,x)",
+}
+
+
+class MolecularDynamics(LammpsEngine):
+    """Newton's equations and nothing else."""
+
+    name: ClassVar[str] = "md"
+    pair_potentials = (RepulsiveMie,)
+    wall_potentials = (IntegratedWall,)
+    motions = (VelocityVerlet,)
+
+    def problems(self, system: System) -> Iterator[str]:
+        if system.solvent:
+            yield f"engine = {self.name!r}: it has no fluid, and the scene needs one"
+        if not system.particle_interactions():
+            yield f"engine = {self.name!r}: the scene has no interacting particles"
+        yield from self.unknown_parts(system)
+        yield from lammps.one_pair_style(system)
+        for axis, periodic in enumerate(system.box.periodic):
+            sides = sorted(wall.side for wall in system.walls_on(axis) if wall.potentials)
+            if not periodic and sides != ["lower", "upper"]:
+                yield f"walls across the {SIZES[axis]}: one on either side must repel particles"
+        for output in system.outputs:
+            unknown = [name for name in output.columns if name not in EXPRESSIONS]
+            if output.kind == "table" and unknown:
+                yield f"{output.file}: engine {self.name} does not tell {', '.join(unknown)}"
+            if output.kind == "profile":
+                yield f"{output.file}: engine {self.name} writes no profile"
+
+    def atoms(self, system: System, start: Start) -> Iterator[str]:
+        yield "atom_modify sort 0 0.0 # the order of the atoms decides the last bit of sums"
+        yield from lammps.read(start)
+        if not start.checkpoint:
+            yield from lammps.groups(system)
+
+    def interactions(self, system: System) -> Iterator[str]:
+        yield from lammps.pairs(system)
+        yield f"pair_modify {system.particle_interactions()[0].potential.pair_modify}"
+        yield f"neighbor {SKIN!r} bin"
+        yield "neigh_modify delay 0 every 1 check yes"
+
+    def motion(self, system: System) -> Iterator[str]:
+        yield "fix motion all nve"
+        if system.box.dimensions == 2:
+            yield "fix plane all enforce2d"
+        for name, species, potential, faces in lammps.wall_faces(system):
+            assert isinstance(potential, IntegratedWall), "problems() has checked it"
+            yield potential.table_fix(name, species, faces, f"{name}.table")
+        yield from lammps.drives(system)
+
+    def averages(self, system: System, start: Start) -> Iterator[str]:
+        yield "# output, averaged over each sampling interval"
+        for output in system.outputs:
+            if output.kind == "table":
+                for column in output.columns:
+                    yield f"variable {column} equal {EXPRESSIONS[column]}"
+
+    def write(self, system: System, state: InitialState, title: str, directory: Path) -> None:
+        with (directory / "state.data").open("w", encoding="utf-8") as file:
+            about = f"initial particles of the scene {title}"
+            file.writelines(lammps.particle_data(system, state, about))
+        for name, _, potential, _ in lammps.wall_faces(system):
+            assert isinstance(potential, IntegratedWall), "problems() has checked it"
+            (directory / f"{name}.table").write_text(potential.table_text(), encoding="utf-8")
+
+
+ENGINE = MolecularDynamics()

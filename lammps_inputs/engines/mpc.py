@@ -1,0 +1,152 @@
+"""The decks of our `fix mpc`: the fluid lives in the fix, LAMMPS's atoms are the species."""
+
+import math
+from collections.abc import Iterator
+from pathlib import Path
+from typing import ClassVar
+
+import numpy as np
+
+from lammps_inputs.engines import lammps
+from lammps_inputs.engines.engine import LammpsEngine, Start
+from lammps_inputs.engines.force_coupling import force_problems
+from lammps_inputs.initial_state import InitialState
+from lammps_inputs.potentials.integrated_wall import IntegratedWall
+from lammps_inputs.potentials.repulsive_mie import RepulsiveMie
+from lammps_inputs.system import FLUID, Drive, Solvent, System, VelocityVerlet
+
+SKIN = 0.5  # of the neighbour list [a0]
+
+
+class Mpc(LammpsEngine):
+    """The hybrid as published, and the fastest."""
+
+    name: ClassVar[str] = "mpc"
+    plugin = True
+    pair_potentials = (RepulsiveMie,)
+    wall_potentials = (IntegratedWall,)
+    motions = (VelocityVerlet,)
+
+    def problems(self, system: System) -> Iterator[str]:
+        yield from self.needs_solvent(system)
+        yield from self.unknown_parts(system)
+        yield from self.needs_slit_or_periodic(system)
+        yield from lammps.one_pair_style(system)
+        yield from force_problems(system)
+
+    def atoms(self, system: System, start: Start) -> Iterator[str]:
+        yield "atom_modify sort 0 0.0 # the order of the atoms decides the last bit of sums"
+        yield from lammps.read(start)
+        if not start.checkpoint:
+            yield from lammps.groups(system)
+
+    def interactions(self, system: System) -> Iterator[str]:
+        ghosts = _ghost_cutoff(system)
+        if not system.particle_interactions():
+            yield "pair_style none"
+            yield f"comm_modify cutoff {max(1.0, ghosts)!r}"
+            return
+        yield from lammps.pairs(system)
+        yield f"pair_modify {system.particle_interactions()[0].potential.pair_modify}"
+        yield f"neighbor {SKIN!r} bin"
+        yield "neigh_modify delay 0 every 1 check yes"
+        if ghosts > SKIN + max(i.potential.cutoff for i in system.particle_interactions()):
+            yield f"comm_modify cutoff {ghosts:.6g} # the fluid sees {_group(system)} so far"
+
+    def motion(self, system: System) -> Iterator[str]:
+        if system.species:
+            yield f"fix motion {_group(system)} nve"
+        for name, species, potential, faces in lammps.wall_faces(system):
+            assert isinstance(potential, IntegratedWall), "problems() has checked it"
+            yield potential.wall_fix(name, species, faces)
+        yield from lammps.drives(system)
+
+    def solvent(self, system: System, start: Start) -> Iterator[str]:
+        fluid = _fluid(system)
+        clock = system.clock
+        options = ["load state.fluid", f"density {fluid.density!r}", f"angle {fluid.angle!r}"]
+        if system.box.dimensions == 3:
+            options.append(f"axis {fluid.rotation.partition('_')[0]}")
+        options += [f"tstat {fluid.thermostat}", f"hydro {fluid.hydrodynamics}"]
+        for drive in system.drives_on(FLUID):
+            options.append(f"field {' '.join(_component(drive, way) for way in drive.direction)}")
+        types = system.types()
+        for species, potential in system.fluid_interactions().items():
+            assert isinstance(potential, RepulsiveMie), "problems() has checked it"
+            options.append(f"force {types[species]} {potential.epsilon!r} {potential.sigma!r}")
+        mode = "append" if start.checkpoint else "file"
+        options.append(f"bins {profile_bins(system)}")
+        options.append(f"profile {clock.look_steps} ${{sample}} {mode} fluid_profile.dat")
+        coupled = _group(system) if system.fluid_interactions() else "NULL"
+        yield "# the MPC solvent"
+        yield (
+            f"fix solvent all mpc {clock.steps_per_collision} {coupled} 1.0 1.0 ${{seed}} "
+            + " ".join(options)
+        )
+
+    def averages(self, system: System, start: Start) -> Iterator[str]:
+        yield "# output, averaged over each sampling interval; the solvent writes its own profile"
+        yield "variable fluid_temperature equal f_solvent"
+        if system.species:
+            group = _group(system)
+            momentum = f"(f_solvent[1]+mass({group})*vcm({group},x))"
+            yield f"variable mean_velocity_x equal {momentum}/(f_solvent[4]+mass({group}))"
+        else:
+            yield "variable mean_velocity_x equal f_solvent[1]/f_solvent[4]"
+
+    def write(self, system: System, state: InitialState, title: str, directory: Path) -> None:
+        with (directory / "state.data").open("w", encoding="utf-8") as file:
+            about = f"initial colloids of the scene {title}"
+            file.writelines(lammps.particle_data(system, state, about))
+        (directory / "state.fluid").write_bytes(fluid_file(state))
+
+
+def profile_bins(system: System) -> int:
+    """Bins of half a cell across y."""
+    return 2 * round(system.box.sizes[1])
+
+
+def fluid_file(state: InitialState, collisions: int = 0) -> bytes:
+    """The fluid of a state as `fix mpc ... load` reads it (docs/fix_mpc.md)."""
+    count, dimensions = state.fluid_positions.shape
+    rows = np.column_stack([np.arange(count), state.fluid_positions, state.fluid_velocities])
+    header = np.array([dimensions, count, collisions], dtype="<i8")
+    return b"mpcfluid" + header.tobytes() + rows.astype("<f8").tobytes()
+
+
+def _component(drive: Drive, way: float) -> str:
+    """A component of an acceleration, from the deck's variable."""
+    if way in (0, 1):
+        return f"${{{drive.variable}}}" if way else "0"
+    return f"$({way!r}*v_{drive.variable})"
+
+
+def _fluid(system: System) -> Solvent:
+    assert system.solvent is not None, "problems() has checked it"
+    return system.solvent
+
+
+def _group(system: System) -> str:
+    return lammps.particle_group(system)
+
+
+def _ghost_cutoff(system: System) -> float:
+    """How far from its cells the fluid has to see species: what fix mpc asks for [a0].
+
+    1.5 cells, the range of the force, and the flights of one collision interval: 7 thermal speeds
+    of the fluid, and 3 times the fastest particle's: a drift of at most 1, 7 thermal speeds of its
+    own, and 3 that it may gain. 0 where no species interacts with the fluid.
+    """
+    fluid = system.fluid_interactions()
+    time = _fluid(system).collision_time
+    return max(
+        (
+            1.5 + fluid[each.name].cutoff + time * (7 + 3 * (1 + 10 / math.sqrt(each.mass)))
+            for each in system.species
+            if each.name in fluid
+        ),
+        default=0.0,
+    )
+
+
+ENGINE = Mpc()

@@ -1,0 +1,87 @@
+"""What scenes with an MPC fluid have in common."""
+
+from collections.abc import Iterator
+from typing import Annotated
+
+from pydantic import Field
+
+from lammps_inputs.limits import solvent_warnings
+from lammps_inputs.scene import Positive, Scene
+from lammps_inputs.system import (
+    SIZES,
+    Box,
+    Clock,
+    Hydrodynamics,
+    Rotation,
+    Solvent,
+    System,
+    Thermostat,
+)
+
+
+class FluidScene(Scene):
+    """The fields of a box of fluid, and what is refused of them."""
+
+    length: Positive = Field(description="box length along the periodic x axis [a0]")
+    width: Positive = Field(description="box width along y [a0]")
+    density: Annotated[float, Field(gt=0, le=1000)] = Field(
+        default=10.0, description="fluid particles per collision cell n_f [1/a0^d]"
+    )
+    collision_time: Positive = Field(description="time between two collisions tau_c [t0]")
+    angle: Annotated[float, Field(gt=0, le=180)] = Field(
+        default=90.0, description="rotation angle alpha of the collision [degrees]"
+    )
+    hydrodynamics: Hydrodynamics = Field(
+        default="on",
+        description="on; or a random solvent: shuffle (velocities interchanged), bath (redrawn)",
+    )
+    thermostat: Thermostat = Field(default="layer", description="thermostat of the fluid")
+
+    def clock(self, md_steps: int = 1) -> Clock:
+        """The clock of the scene's times, by so many steps of molecular dynamics a collision."""
+        return Clock.of_times(
+            beat=self.collision_time,
+            sampling_interval=self.sampling_interval,
+            equilibration=self.equilibration,
+            duration=self.duration,
+            steps_per_beat=md_steps,
+        )
+
+    def solvent(
+        self, volume: float, rotation: Rotation = "coordinate_axes", shear_wave: float = 0.0
+    ) -> Solvent:
+        """The fluid of the scene, in a volume [a0^d]."""
+        return Solvent(
+            particles=round(self.density * volume),
+            density=self.density,
+            collision_time=self.collision_time,
+            angle=self.angle,
+            rotation=rotation,
+            hydrodynamics=self.hydrodynamics,
+            thermostat=self.thermostat,
+            shear_wave=shear_wave,
+        )
+
+    def problems(self) -> Iterator[str]:
+        yield from super().problems()
+        system: System = self.system
+        yield from _box_problems(system.box)
+        fluid = system.solvent
+        if fluid and fluid.particles < 2:
+            yield f"density = {self.density!r}: leaves {fluid.particles} fluid particles"
+
+    def warnings(self) -> Iterator[str]:
+        yield from super().warnings()
+        if self.system.solvent:
+            yield from solvent_warnings(self.system.solvent, self.system.box)
+
+
+def _box_problems(box: Box) -> Iterator[str]:
+    for name, size, periodic in zip(SIZES, box.sizes, box.periodic, strict=False):
+        if periodic and size != round(size):
+            yield (
+                f"{name} = {size!r}: a periodic length must be a whole number of "
+                "collision cells (a0 = 1)"
+            )
+        if size < 2:
+            yield f"{name} = {size!r}: at least 2 collision cells are needed"

@@ -1,0 +1,52 @@
+"""Gravity-driven flow of the pure fluid between walls (tabatabaei-2009, 3.2.6)."""
+
+from collections.abc import Iterator
+from typing import ClassVar
+
+from pydantic import Field
+
+from lammps_inputs.fluid_scene import FluidScene
+from lammps_inputs.limits import SOUND
+from lammps_inputs.scene import NonNegative, Positive
+from lammps_inputs.system import FLUID, FLUID_AVERAGES, FLUID_PROFILE, Box, Drive, System, slit
+from lammps_inputs.viscosity import viscosity
+
+
+class Poiseuille(FluidScene):
+    """A 2D slit of pure fluid, periodic along x, gravity on the fluid; defaults of Fig. 3.6."""
+
+    name: ClassVar[str] = "poiseuille"
+
+    length: Positive = Field(default=25.0, description="channel length along x [a0]")
+    width: Positive = Field(default=25.0, description="distance between the walls [a0]")
+    collision_time: Positive = Field(default=0.1, description="collision time tau_c [t0]")
+    gravity: float = Field(default=0.001, description="acceleration of the fluid along x [a0/t0^2]")
+    duration: Positive = Field(default=4000.0, description="time after equilibration [t0]")
+    equilibration: NonNegative = Field(default=400.0, description="time left out [t0]")
+
+    @property
+    def expected_speed(self) -> float:
+        """Fluid on the mid-line, |g| L_y^2 / (8 nu) (3.15) [a0/t0]."""
+        nu = viscosity(self.density, self.collision_time, self.angle)
+        return abs(self.gravity) * self.width**2 / (8 * nu)
+
+    def build(self) -> System:
+        return System(
+            box=Box((self.length, self.width), periodic=(True, False)),
+            clock=self.clock(),
+            walls=slit(axis=1),
+            drives=(Drive(FLUID, self.gravity),),
+            solvent=self.solvent(self.length * self.width),
+            outputs=(FLUID_PROFILE, FLUID_AVERAGES),
+            measures=("fluid_temperature", "parabolic_flow"),
+        )
+
+    def problems(self) -> Iterator[str]:
+        yield from super().problems()
+        if self.hydrodynamics == "on" and self.expected_speed > SOUND:
+            largest = abs(self.gravity) * SOUND / self.expected_speed
+            yield (
+                f"gravity = {self.gravity!r}: the fluid would flow at about "
+                f"{self.expected_speed:.2g}, faster than its sound ({SOUND:g}); must be between "
+                f"{-largest:.2g} and {largest:.2g}"
+            )

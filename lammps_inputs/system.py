@@ -1,0 +1,374 @@
+"""The parts of a system: what engines write and measures ask, whatever its scene is called.
+
+All parts are frozen data in reduced units: lengths in a0, energies in kBT, masses in m_f, times in
+t0. A scene builds its `System` from them; an engine refuses the parts that it does not know.
+"""
+
+import math
+from collections.abc import Iterator
+from dataclasses import dataclass
+from typing import Any, Literal, Protocol, Self
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+Array = NDArray[np.float64]
+
+FLUID = "fluid"  # in interactions and drives: the solvent
+SIZES = ("length", "width", "height")  # what scenes call the edges of the box along x, y and z
+LONGEST_LOOK = 10  # beats between two looks at a fluid: its velocities decorrelate in a few
+
+Hydrodynamics = Literal["on", "shuffle", "bath"]
+Thermostat = Literal["none", "layer", "monte_carlo", "maxwell_boltzmann", "rescale", "andersen"]
+Rotation = Literal["random_axis", "coordinate_axes"]
+Side = Literal["lower", "upper"]
+
+
+@dataclass(frozen=True)
+class Box:
+    """Edges from the origin on [a0], and whether each axis is periodic; one entry a dimension."""
+
+    sizes: tuple[float, ...]
+    periodic: tuple[bool, ...]
+
+    @property
+    def dimensions(self) -> int:
+        """Number of space dimensions d."""
+        return len(self.sizes)
+
+    def nearest_image(self, separation: Array) -> Array:
+        """Separations (..., d) between the nearest periodic images, a new array [a0]."""
+        image = separation.copy()
+        for axis, (size, periodic) in enumerate(zip(self.sizes, self.periodic, strict=True)):
+            if periodic:
+                image[..., axis] -= size * np.round(image[..., axis] / size)
+        return image
+
+
+@dataclass(frozen=True)
+class Clock:
+    """When an engine steps, collides, looks and writes; all but the time step in engine steps.
+
+    Attributes:
+        time_step: that of molecular dynamics where there is any, else the collision time [t0].
+        steps_per_collision: of the solvent; 1 where there is none.
+        sample_steps: between two outputs.
+        look_steps: between two looks at the system, which an output averages; they divide
+            `sample_steps` and are at most half of it. With a single look LAMMPS would also output
+            at the step a run starts from.
+        equilibration_steps: at the start, left out of averages.
+        total_steps: of the whole run, equilibration included; whole outputs.
+    """
+
+    time_step: float
+    steps_per_collision: int
+    sample_steps: int
+    look_steps: int
+    equilibration_steps: int
+    total_steps: int
+
+    @classmethod
+    def of_times(
+        cls,
+        beat: float,
+        sampling_interval: float,
+        equilibration: float,
+        duration: float,
+        steps_per_beat: int = 1,
+    ) -> Self:
+        """Times [t0] rounded to whole beats, a run to whole outputs of at least two beats.
+
+        Args:
+            beat: collision time, or the time step of an engine without collisions.
+            steps_per_beat: engine steps in a beat.
+        """
+        beats = max(2, round(sampling_interval / beat))
+        outputs = max(1, math.ceil((equilibration + duration) / beat / beats - 1e-9))
+        look = next(
+            beats // looks
+            for looks in range(2, beats + 1)
+            if beats % looks == 0 and beats // looks <= LONGEST_LOOK
+        )
+        return cls(
+            time_step=beat / steps_per_beat,
+            steps_per_collision=steps_per_beat,
+            sample_steps=beats * steps_per_beat,
+            look_steps=look * steps_per_beat,
+            equilibration_steps=round(equilibration / beat) * steps_per_beat,
+            total_steps=outputs * beats * steps_per_beat,
+        )
+
+    @property
+    def collisions(self) -> int:
+        """Collisions of the whole run."""
+        return self.total_steps // self.steps_per_collision
+
+    @property
+    def looks(self) -> int:
+        """Looks that one output averages."""
+        return self.sample_steps // self.look_steps
+
+    @property
+    def end(self) -> float:
+        """Time of the whole run [t0]."""
+        return self.total_steps * self.time_step
+
+
+@dataclass(frozen=True)
+class Species:
+    """Particles that move by themselves, not the fluid; `name` is their group in LAMMPS.
+
+    Attributes:
+        count: how many.
+        mass: of one [m_f].
+        radius: where others meet its surface; 0: a point [a0].
+    """
+
+    name: str
+    count: int
+    mass: float
+    radius: float = 0.0
+
+
+class PairPotential(Protocol):
+    """A pair potential: numpy energy and force beside the LAMMPS lines that realise it."""
+
+    @property
+    def cutoff(self) -> float:
+        """Distance from which on it is zero [a0]."""
+
+    @property
+    def title(self) -> str:
+        """`48-24 repulsion`."""
+
+    @property
+    def pair_style(self) -> str:
+        """Name of the LAMMPS style, without its arguments."""
+
+    @property
+    def pair_modify(self) -> str:
+        """Arguments of the `pair_modify` line."""
+
+    def energy(self, r: ArrayLike) -> Array:
+        """Energy at distances r > 0 [kBT]."""
+
+    def force(self, r: ArrayLike) -> Array:
+        """-dU/dr at distances r > 0 [kBT/a0]."""
+
+    def pair_coeff(self, types: str) -> str:
+        """The `pair_coeff` line of two atom types."""
+
+    def no_pair_coeff(self, types: str) -> str:
+        """The `pair_coeff` line of two atom types that do not interact."""
+
+
+class WallPotential(Protocol):
+    """The potential of a wall for a species, by the distance of the centre from the wall."""
+
+    @property
+    def stiffness(self) -> float:
+        """Largest second derivative in thermal reach [kBT/a0^2]."""
+
+    def energy(self, distance: ArrayLike) -> Array:
+        """Energy at distances > 0 [kBT]."""
+
+    def force(self, distance: ArrayLike) -> Array:
+        """Force away from the wall at distances > 0 [kBT/a0]."""
+
+
+@dataclass(frozen=True)
+class Interaction:
+    """A potential between two species, or a species and the `FLUID`."""
+
+    first: str
+    second: str
+    potential: PairPotential
+
+
+@dataclass(frozen=True)
+class Wall:
+    """A wall at one end of a box axis; it bounces the fluid back.
+
+    Attributes:
+        axis: 0, 1 or 2, not periodic.
+        side: of the box.
+        potentials: for species, by name.
+    """
+
+    axis: int
+    side: Side
+    potentials: tuple[tuple[str, WallPotential], ...] = ()
+
+
+def slit(axis: int, potentials: tuple[tuple[str, WallPotential], ...] = ()) -> tuple[Wall, Wall]:
+    """The walls at both ends of an axis."""
+    return Wall(axis, "lower", potentials), Wall(axis, "upper", potentials)
+
+
+@dataclass(frozen=True)
+class Drive:
+    """A constant acceleration of a species, or of the `FLUID`.
+
+    Attributes:
+        target: name of the species, or `FLUID`.
+        magnitude: [a0/t0^2].
+        direction: unit vector, three components.
+        variable: of the deck, which holds the magnitude: `-var VARIABLE VALUE` changes it.
+    """
+
+    target: str
+    magnitude: float
+    direction: tuple[float, float, float] = (1.0, 0.0, 0.0)
+    variable: str = "gravity"
+
+    @property
+    def acceleration(self) -> Array:
+        """Magnitude times direction, (3,) [a0/t0^2]."""
+        return self.magnitude * np.array(self.direction)
+
+
+@dataclass(frozen=True)
+class VelocityVerlet:
+    """Newton's equations of motion, by velocity Verlet."""
+
+
+Motion = VelocityVerlet
+
+
+@dataclass(frozen=True)
+class Solvent:
+    """The MPC fluid. Its coupling to a species is their interaction with the `FLUID`.
+
+    Attributes:
+        particles: N_f.
+        density: n_f, fluid particles in a collision cell [1/a0^d].
+        collision_time: tau_c [t0].
+        angle: alpha [degrees].
+        rotation: axis of the 3D rotation.
+        hydrodynamics: on, or the random solvent instead.
+        thermostat: of the fluid.
+        shear_wave: amplitude A of the initial flow v_x = A sin(2 pi y / L_y) [a0/t0].
+    """
+
+    particles: int
+    density: float
+    collision_time: float
+    angle: float
+    rotation: Rotation = "coordinate_axes"
+    hydrodynamics: Hydrodynamics = "on"
+    thermostat: Thermostat = "layer"
+    shear_wave: float = 0.0
+
+
+class Placement(Protocol):
+    """Where the particles are at the start."""
+
+    def positions(self, box: Box, species: tuple[Species, ...], seed: int) -> Array:
+        """Centres of all species, one after the other, (N, d) [a0]."""
+
+
+Kind = Literal["trajectory", "table", "profile"]
+
+
+@dataclass(frozen=True)
+class Output:
+    """A file of a run, written every `sample_steps` (docs/run-directory.md).
+
+    Attributes:
+        file: its name.
+        kind: trajectory of particles; table of averages; profile across the y axis.
+        columns: beside the step. Those of a table are quantities that the engine averages.
+    """
+
+    file: str
+    kind: Kind
+    columns: tuple[str, ...]
+
+
+TRAJECTORY = Output(
+    "trajectory.lammpsdump",
+    "trajectory",
+    ("id", "type", "x", "y", "z", "vx", "vy", "vz", "ix", "iy", "iz"),
+)
+FLUID_PROFILE = Output(
+    "fluid_profile.dat", "profile", ("Coord1", "Ncount", "density/number", "vx", "temp")
+)
+FLUID_AVERAGES = Output("observables.dat", "table", ("fluid_temperature", "mean_velocity_x"))
+PARTICLE_AVERAGES = Output(
+    "observables.dat", "table", ("temperature", "potential_energy", "mean_velocity_x")
+)
+
+
+@dataclass(frozen=True)
+class System:
+    """What is simulated, by its parts.
+
+    Attributes:
+        species: particles, none for a pure fluid; atom types of LAMMPS from 1 on, in this order.
+        placement: of the species at the start; None without any.
+        solvent: None: the species move in vacuum.
+        outputs: what the run writes.
+        measures: what `narrows analyze` makes of it, names of `analysis/measures`.
+    """
+
+    box: Box
+    clock: Clock
+    outputs: tuple[Output, ...]
+    measures: tuple[str, ...]
+    species: tuple[Species, ...] = ()
+    placement: Placement | None = None
+    interactions: tuple[Interaction, ...] = ()
+    walls: tuple[Wall, ...] = ()
+    drives: tuple[Drive, ...] = ()
+    motion: Motion = VelocityVerlet()
+    solvent: Solvent | None = None
+
+    @property
+    def particles(self) -> int:
+        """Number of particles of all species."""
+        return sum(species.count for species in self.species)
+
+    @property
+    def masses(self) -> Array:
+        """Mass of each particle, (N,) [m_f]."""
+        return self._each("mass")
+
+    @property
+    def radii(self) -> Array:
+        """Radius of each particle, (N,) [a0]."""
+        return self._each("radius")
+
+    @property
+    def work(self) -> float:
+        """Particle updates of the whole run, which run time is proportional to."""
+        fluid = self.solvent.particles if self.solvent else 0
+        return float(fluid * self.clock.collisions + self.particles * self.clock.total_steps)
+
+    def types(self) -> dict[str, int]:
+        """Atom type of each species."""
+        return {species.name: number for number, species in enumerate(self.species, start=1)}
+
+    def atom_types(self) -> list[int]:
+        """Atom type of each particle."""
+        types = enumerate(self.species, start=1)
+        return [number for number, species in types for _ in range(species.count)]
+
+    def particle_interactions(self) -> tuple[Interaction, ...]:
+        """Interactions between species."""
+        return tuple(i for i in self.interactions if FLUID not in (i.first, i.second))
+
+    def fluid_interactions(self) -> dict[str, PairPotential]:
+        """The potential of each species that interacts with the fluid."""
+        return {i.first: i.potential for i in self.interactions if i.second == FLUID}
+
+    def drives_on(self, target: str) -> Iterator[Drive]:
+        """The drives on a species, or on the `FLUID`."""
+        return (drive for drive in self.drives if drive.target == target)
+
+    def walls_on(self, axis: int) -> tuple[Wall, ...]:
+        """The walls across an axis."""
+        return tuple(wall for wall in self.walls if wall.axis == axis)
+
+    def _each(self, attribute: str) -> Array:
+        values: list[Any] = [getattr(species, attribute) for species in self.species]
+        return np.repeat(np.array(values, dtype=float), [s.count for s in self.species])

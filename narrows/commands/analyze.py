@@ -1,0 +1,63 @@
+"""`narrows analyze`: the numbers of a run, or of all runs of a sweep, with their errors."""
+
+from pathlib import Path
+from typing import Annotated
+
+import typer
+
+from narrows.messages import user_errors
+from run_files.sweep_file import is_sweep
+from srd_driver.sweep import available_cores
+
+
+def analyze(
+    directory: Annotated[Path, typer.Argument(metavar="DIR", help="of a run or a sweep")],
+) -> None:
+    """Analyse a run: writes summary.json and figures into DIR; of a sweep, all runs and a table."""
+    from rich.console import Console  # here, so that `narrows --help` stays fast
+    from rich.markup import escape
+    from rich.table import Table
+
+    from analysis import analyze as analyze_run
+    from analysis.analyze import estimates
+
+    if is_sweep(directory):
+        _tabulate(directory)
+        return
+    with user_errors():
+        summary = analyze_run(directory)
+    state = "" if summary["finished"] else ", not finished"
+    title = f"{summary['scene']}, engine {summary['engine']}{state}"
+    table = Table("quantity", "value", "error", "note", title=escape(title), title_justify="left")
+    for path, entry in estimates(summary).items():
+        name = path.replace(".", " ").replace("_", " ")
+        theory = entry.get("theory")
+        note = entry.get("reason") or ("" if theory is None else f"theory {theory:.5g}")
+        numbers = _number(entry["value"], 5), _number(entry["error"], 2)
+        table.add_row(escape(name), *numbers, escape(note))
+    console = Console()
+    console.print(table)
+    files = ["summary.json", *summary["figures"]]
+    files_line = f"written to {directory}: {', '.join(files)}"
+    console.print(files_line, highlight=False, markup=False, soft_wrap=True)
+    for warning in summary["warnings"]:
+        typer.echo(f"warning: {warning}", err=True)
+
+
+def _tabulate(directory: Path) -> None:
+    from analysis import tabulate
+
+    with user_errors():
+        table = tabulate(directory, available_cores())
+    for problem in table.problems:
+        typer.echo(f"narrows: {problem}", err=True)
+    typer.echo(
+        f"written: {directory / 'table.csv'}: {len(table.rows)} points "
+        f"from {table.finished} of {table.runs} runs"
+    )
+    if table.problems:
+        raise typer.Exit(1)
+
+
+def _number(value: float | None, digits: int) -> str:
+    return "-" if value is None else f"{value:.{digits}g}"

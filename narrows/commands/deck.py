@@ -1,0 +1,39 @@
+"""`narrows deck`: a scene to a folder that plain LAMMPS runs."""
+
+from pathlib import Path
+from typing import Annotated
+
+import typer
+
+import lammps_plugin
+from lammps_inputs import SceneError, engine_named
+from lammps_inputs.deck import warnings, write_deck
+from lammps_inputs.engines import DEFAULT
+from lammps_inputs.engines.engine import LammpsEngine
+from narrows.messages import say, user_errors, warn
+from narrows.scene_options import DECKS, SceneFile, SceneName, Settings, scene_of
+from srd_driver import RunError
+from srd_driver.resume import write_scene
+
+
+def deck(
+    scene: SceneName,
+    out: Annotated[Path, typer.Option("--out", metavar="DIR", help="a new or empty folder")],
+    file: SceneFile = None,
+    settings: Settings = None,
+    engine: Annotated[str, typer.Option(metavar=DECKS, help="whose deck")] = DEFAULT,
+) -> None:
+    """Write a folder that runs with `lmp -in in.lammps`."""
+    with user_errors():
+        chosen, written_by = scene_of(scene, file, settings), engine_named(engine)
+        if not isinstance(written_by, LammpsEngine):
+            raise SceneError.of_field("engine", engine, f"writes no deck; must be one of {DECKS}")
+        warn(warnings(chosen, written_by))
+        out.mkdir(parents=True, exist_ok=True)
+        if any(out.iterdir()):
+            raise RunError(f"{out} is not empty: choose another folder")
+        write_deck(chosen, out, written_by)
+        write_scene(chosen, written_by, out)
+        say(f"{out}: run it there with  lmp -in in.lammps  or  mpirun -np 2 lmp -in in.lammps")
+        if written_by.plugin and not lammps_plugin.folder():
+            say("lmp needs our plugin, which was not built here: see narrows run")

@@ -1,0 +1,62 @@
+"""`narrows run`: a scene to a run directory."""
+
+from pathlib import Path
+from typing import Annotated, Any
+
+import typer
+
+from lammps_inputs import engine_named
+from lammps_inputs.deck import warnings
+from lammps_inputs.engines import DEFAULT
+from narrows.messages import say, user_errors, warn
+from narrows.progress import finish_with_progress
+from narrows.scene_options import ENGINES, SceneFile, SceneName, Settings, scene_of
+from run_files.manifest import read_manifest
+from srd_driver import Simulation
+from srd_driver.parallel import agree, communicator
+from srd_driver.resume import is_half_made, stored_fields
+from srd_driver.signals import stopped_by_signals
+
+
+def run(
+    scene: SceneName,
+    out: Annotated[Path, typer.Option("--out", metavar="DIR", help="a new or empty folder")],
+    file: SceneFile = None,
+    settings: Settings = None,
+    engine: Annotated[
+        str | None,
+        typer.Option(metavar=ENGINES, help=f"default: {DEFAULT}, or that of the resumed run"),
+    ] = None,
+    resume: Annotated[bool, typer.Option("--resume", help="go on with the run in DIR")] = False,
+    checkpoint_interval: Annotated[
+        float, typer.Option(min=0.0, help="time between two checkpoints [t0]")
+    ] = 20.0,
+) -> None:
+    """Run a scene into a run directory; alone or under mpirun."""
+    with user_errors():
+        stored, engine_before = agree(
+            communicator(), lambda: _stored(out) if resume else ({}, None)
+        )
+        chosen = scene_of(scene, file, settings, stored)
+        engine = engine or engine_before or DEFAULT
+        warn(warnings(chosen, engine_named(engine)))
+        with (
+            Simulation(chosen, engine, out, resume, checkpoint_interval) as simulation,
+            stopped_by_signals(simulation),
+        ):
+            if simulation.finished:
+                say(f"{out}: finished before, at time {simulation.time:g}")
+                return
+            if simulation.step:
+                say(f"{out}: going on from time {simulation.time:g}")
+            finish_with_progress(simulation)
+            if not simulation.finished:
+                raise KeyboardInterrupt
+            say(f"{out}: at time {simulation.time:g}; next: narrows analyze {out}")
+
+
+def _stored(directory: Path) -> tuple[dict[str, Any], str | None]:
+    """Fields and engine of the run to resume, if there is one."""
+    if not directory.is_dir() or not any(directory.iterdir()) or is_half_made(directory):
+        return {}, None
+    return stored_fields(directory), read_manifest(directory).engine

@@ -1,0 +1,137 @@
+"""Runs what is missing, makes the figures, writes the files.
+
+A run that fails costs the figures that need it, and no others.
+"""
+
+import csv
+import hashlib
+import time as clock
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass, field
+from importlib.metadata import version
+from pathlib import Path
+
+import matplotlib
+
+from analysis import RunDirectory, RunDirectoryError
+from lammps_inputs import Scene
+from lammps_inputs.engines import engine_named
+from narrows.papers.drawing import STYLE
+from narrows.papers.figure import Outcome, Paper, PaperFigure, Quality
+from narrows.papers.page import Made, Report, write_page
+from narrows.papers.results import Result, write_results
+from srd_driver.sweep import Advance, Run, is_finished, run_all
+
+
+def select(paper: Paper, numbers: Sequence[str]) -> list[PaperFigure]:
+    """The figures of these numbers in the paper's order, all of them for none.
+
+    Raises:
+        ValueError: for a number that is not among them.
+    """
+    known = [figure.number for figure in paper.figures]
+    for number in numbers:
+        if number not in known:
+            raise ValueError(f"figure {number!r}: {paper.name} has {', '.join(known)}")
+    return [figure for figure in paper.figures if not numbers or figure.number in numbers]
+
+
+def run_of(scene: Scene, engine: str, out: Path) -> Run:
+    """The run of a scene; its folder is named by what it is, so that figures share it."""
+    digest = hashlib.sha256((scene.toml() + engine).encode()).hexdigest()[:10]
+    system = scene.system
+    sizes = "x".join(f"{size:g}" for size in system.box.sizes)
+    name = f"{scene.name}-{sizes}-{system.particles or 'no'}-{digest}"
+    return Run(out / "runs" / name, scene, engine_named(engine))
+
+
+@dataclass
+class Plan:
+    """What a command will do: figures and the distinct runs they need, the longest first."""
+
+    paper: Paper
+    figures: Sequence[PaperFigure]
+    quality: Quality
+    out: Path
+    runs: list[Run] = field(init=False)
+
+    def __post_init__(self) -> None:
+        scenes = {scene: None for figure in self.figures for scene in figure.scenes(self.quality)}
+        longest_first = sorted(scenes, key=lambda scene: -scene.system.work)
+        self.runs = [run_of(scene, self.paper.engine, self.out) for scene in longest_first]
+
+    def finished(self) -> int:
+        """How many of the runs are finished already.
+
+        Raises:
+            RunError: when a run directory holds another scene or engine.
+        """
+        return sum(is_finished(run) for run in self.runs)
+
+
+@dataclass(frozen=True)
+class Done:
+    """What came of a command: results, and one line for each figure that was left out."""
+
+    results: list[Result]
+    left_out: list[str]
+
+
+def carry_out(plan: Plan, jobs: int, report: Callable[[Advance], None] | None = None) -> Done:
+    """Run what is not finished, make every figure whose runs are there, write all files.
+
+    Raises:
+        RunError: before anything runs, when a run directory holds another scene or engine.
+        OSError: when the results cannot be written.
+    """
+    began = clock.perf_counter()
+    plan.out.mkdir(parents=True, exist_ok=True)
+    failures = {failure.run.scene: failure for failure in run_all(plan.runs, jobs, report)}
+    ran = clock.perf_counter()
+    directories = {
+        run.scene: RunDirectory(run.folder) for run in plan.runs if run.scene not in failures
+    }
+    made, left_out = list[Made](), list[str]()
+    for figure in plan.figures:
+        scenes = figure.scenes(plan.quality)
+        failed = next((failures[scene] for scene in scenes if scene in failures), None)
+        try:
+            if failed:
+                raise RunDirectoryError(f"{failed.run.folder}: {failed.message}")
+            with matplotlib.rc_context(STYLE):
+                outcome = figure.make(directories, plan.quality)
+                picture = _write_figure(plan.out / f"figure-{figure.number}", outcome)
+        except ValueError as error:  # RunDirectoryError, and a fit that its points do not determine
+            left_out.append(f"figure {figure.number} left out: {error}")
+        else:
+            made.append(Made(figure, outcome, scenes, picture))
+    results = [result for each in made for result in each.outcome.results]
+    write_results(plan.out / "results.json", results)
+    write_page(
+        plan.out / "index.html",
+        Report(
+            plan.paper,
+            plan.quality,
+            made,
+            left_out,
+            runs=len(plan.runs),
+            run_seconds=sum(run.wall_seconds() or 0.0 for run in directories.values()),
+            this_run_seconds=ran - began,
+            figure_seconds=clock.perf_counter() - ran,
+            jobs=jobs,
+            seeds=sorted({scene.seed for scene in directories}),
+            versions={name: version(name) for name in ("narrows", "lammps", "numpy", "matplotlib")},
+        ),
+    )
+    return Done(results, left_out)
+
+
+def _write_figure(stem: Path, outcome: Outcome) -> Path:
+    """PNG, PDF and CSV; the PNG's path."""
+    for suffix in (".png", ".pdf"):
+        outcome.picture.savefig(f"{stem}{suffix}")
+    with Path(f"{stem}.csv").open("w", newline="", encoding="utf-8") as file:
+        writer = csv.writer(file)
+        writer.writerow(outcome.table)
+        writer.writerows(zip(*outcome.table.values(), strict=True))
+    return Path(f"{stem}.png")

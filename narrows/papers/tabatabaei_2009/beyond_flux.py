@@ -1,0 +1,346 @@
+"""Beyond the thesis: the current J(rho) of the colloids, from one in 100 a0 to close packing.
+
+Two windows of time. Early, the colloids are a file on the mid-line. Late, dense channels have gone
+over to a zigzag, which is slower.
+"""
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from functools import cache
+
+import numpy as np
+from matplotlib.figure import Figure
+
+from analysis import blocking
+from analysis.blocking import Estimate
+from analysis.flux import PolynomialFit, asep_form, current, fit_quality
+from analysis.settling import settling_series
+from lammps_inputs import Scene
+from lammps_inputs.scenes.poiseuille import Poiseuille
+from narrows.papers.drawing import paper_line, points
+from narrows.papers.figure import Column, Directories, Outcome, PaperFigure, Quality
+from narrows.papers.results import Result, claimed, compared, measured
+from narrows.papers.tabatabaei_2009.many_colloids import REST_INTERCEPT, REST_SLOPE
+from narrows.papers.tabatabaei_2009.state_points import Point, difference, point, scenes_of
+
+NUMBER = "beyond-flux"
+EARLY, LATE = (12.0, 300.0), (600.0, 1100.0)  # after the release [t0]
+ZIGZAG = 0.018  # densities from here on leave the mid-line within the run [1/a0^2]
+FRAME = 0.12  # V of the ASEP form that is drawn [a0/t0]
+
+
+@cache
+def short_channels(quality: Quality) -> tuple[Point, ...]:
+    """100 x 10 from one colloid to 25, which touch."""
+    if quality == "quick":
+        return tuple(point(100, number, 2, 200.0) for number in (4, 10, 16, 22, 25))
+    return tuple(point(100, number, 2) for number in (1, 2, 4, 7, 10, 13, 16, 18, 20, 22, 24, 25))
+
+
+@cache
+def long_channels(quality: Quality) -> tuple[Point, ...]:
+    """600 x 10 at densities of the short ones."""
+    if quality == "quick":
+        return tuple(point(600, number, 1, 200.0) for number in (60, 96))
+    return tuple(point(600, number, 1, 500.0) for number in (24, 60, 96, 120, 144))
+
+
+@cache
+def pure_fluid(quality: Quality) -> Poiseuille:
+    """The fluid of the channel without colloids, driven as a pressure gradient would."""
+    return Poiseuille.make(
+        length=100,
+        width=10,
+        collision_time=0.015,
+        gravity=0.05,
+        equilibration=30,
+        duration=300.0 if quality == "full" else 100.0,
+        sampling_interval=3.0,
+    )
+
+
+def scenes(quality: Quality) -> list[Scene]:
+    """Every run that `homogeneous_law` needs."""
+    return [*scenes_of(short_channels(quality)), pure_fluid(quality)]
+
+
+@dataclass(frozen=True)
+class Homogeneous:
+    """Means of a homogeneous channel in a window of time.
+
+    Attributes:
+        rest, co_moving: mean velocity of the colloids in the two frames [a0/t0].
+        frame: velocity of the co-moving frame, that of all mass together [a0/t0].
+    """
+
+    where: Point
+    rest: Estimate
+    co_moving: Estimate
+    frame: Estimate
+
+    @property
+    def coupling(self) -> Estimate:
+        """Volume flux per width and force per area X = frame / (rho F), as masses match volumes."""
+        scene = self.where.scenes[0]
+        return self.frame.scaled(1 / (self.where.density * scene.colloid_mass * scene.gravity))
+
+
+def homogeneous(directories: Directories, where: Point, window: tuple[float, float]) -> Homogeneous:
+    """Means over time and seeds; errors from blocks of all seeds one after the other."""
+    runs = [settling_series(directories[scene]) for scene in where.scenes]
+    used = [(run.times > window[0]) & (run.times <= window[1]) for run in runs]
+    rest = np.concatenate([run.rest[part] for run, part in zip(runs, used, strict=True)])
+    moving = np.concatenate([run.co_moving[part] for run, part in zip(runs, used, strict=True)])
+    return Homogeneous(
+        where, blocking.mean(rest), blocking.mean(moving), blocking.mean(rest - moving)
+    )
+
+
+@dataclass(frozen=True)
+class Constants:
+    """Of a file on the mid-line.
+
+    Attributes:
+        intercept, slope: of v = c' + c rho in the frame at rest [a0/t0], [a0^3/t0].
+        coupling: X, volume flux per width and force per area [a0^3/t0].
+        permeability: K, that of the pure fluid [a0^3/t0].
+    """
+
+    intercept: float
+    slope: float
+    coupling: float
+    permeability: float
+
+
+@dataclass(frozen=True)
+class Law:
+    """What homogeneous channels tell of the file on the mid-line, with errors."""
+
+    densities: tuple[float, ...]
+    speed: PolynomialFit
+    speed_errors: tuple[float, ...]
+    coupling: PolynomialFit
+    permeability: Estimate
+
+    @property
+    def constants(self) -> Constants:
+        """The best ones."""
+        intercept, slope = (_number(one) for one in self.speed.coefficients)
+        coupling = _number(self.coupling.coefficients[0])
+        return Constants(intercept, slope, coupling, _number(self.permeability))
+
+    def replica(self, rng: np.random.Generator) -> Constants:
+        """Those of another measurement as good as this one."""
+        scatter = max(1.0, self.speed.chi_squared / self.speed.freedom) ** 0.5
+        errors = np.array(self.speed_errors)
+        drawn = self.speed(self.densities) + scatter * errors * rng.normal(size=len(errors))
+        again = [Estimate(float(v), float(e)) for v, e in zip(drawn, errors, strict=True)]
+        intercept, slope = fit_quality(self.densities, again).coefficients
+        coupling, permeability = (
+            _number(one) + rng.normal() * (one.error or 0.0)
+            for one in (self.coupling.coefficients[0], self.permeability)
+        )
+        return Constants(_number(intercept), _number(slope), coupling, permeability)
+
+
+def _number(estimate: Estimate) -> float:
+    assert estimate.value is not None
+    return estimate.value
+
+
+def homogeneous_law(directories: Directories, quality: Quality) -> Law:
+    """Fits through the short channels in the early window."""
+    found = [homogeneous(directories, where, EARLY) for where in short_channels(quality)]
+    densities = _densities(found)
+    fluid = pure_fluid(quality)
+    run = directories[fluid]
+    table = run.table()
+    flow = table["mean_velocity_x"][run.sampled(table.steps)]
+    return Law(
+        tuple(densities),
+        fit_quality(densities, [one.rest for one in found]),
+        tuple(one.rest.error or 0.0 for one in found),
+        fit_quality(densities, [one.coupling for one in found], degree=0),
+        blocking.mean(flow).scaled(1 / (fluid.density * fluid.gravity)),
+    )
+
+
+def _densities(found: Sequence[Homogeneous]) -> list[float]:
+    return [one.where.density for one in found]
+
+
+def _draw(
+    early: Sequence[Homogeneous],
+    long: Sequence[Homogeneous],
+    late: Sequence[Homogeneous],
+    line: PolynomialFit,
+) -> Figure:
+    figure = Figure(figsize=(10.5, 4.1), layout="constrained")
+    speeds, currents = figure.subplots(1, 2)
+    fine = np.linspace(0, 0.0265, 100)
+    series = [(early, 0, "100 x 10, file on the mid-line"), (long, 1, "600 x 10, the same")]
+    series += [(late, 2, "100 x 10, late: zigzag")] if late else []
+    for found, number, label in series:
+        x = _densities(found)
+        hollow = {"markerfacecolor": "white"} if number == 2 else {}
+        points(speeds, x, [one.rest for one in found], number, label=label, **hollow)
+        points(speeds, x, [one.co_moving for one in found], number, alpha=0.55, **hollow)
+        flow = [current(one.where.density, one.rest) for one in found]
+        points(currents, x, flow, number, label=label, **hollow)
+        flow = [current(one.where.density, one.co_moving) for one in found]
+        points(currents, x, flow, number, alpha=0.55, **hollow)
+    speeds.plot(fine, line(fine), label="line through the blue points, at rest")
+    currents.plot(fine, fine * line(fine))
+    thesis = REST_SLOPE.value * fine + REST_INTERCEPT.value
+    paper_line(speeds, fine, thesis, r"thesis, Fig. 5.1: $5.71\,\rho + 0.019$, at rest")
+    paper_line(currents, fine, fine * thesis, "thesis (5.3) at rest")
+    form = asep_form(REST_SLOPE.value, REST_INTERCEPT.value, FRAME)
+    label = rf"(5.3) from a frame at $V$ = {FRAME:g}: ASEP of negative $p - q$"
+    paper_line(currents, fine, form.current(fine), label, linestyle=":")
+    for axes, ylabel in (
+        (speeds, "mean velocity  [$a_0/t_0$]"),
+        (currents, r"current $J = \rho v$  [$1/(a_0 t_0)$]"),
+    ):
+        axes.axvline(0.025, color="0.7", linewidth=0.8)
+        axes.set(xlabel=r"density $\rho = N_c/(L_x L_y)$  [$a_0^{-2}$]", ylabel=ylabel)
+        axes.set_xlim(0, 0.0265)
+        axes.legend(loc="upper left")
+    speeds.set_ylim(0, 0.235)
+    speeds.text(0.0247, 0.004, "file closed", rotation=90, ha="right", fontsize=8, color="0.5")
+    speeds.text(0.0246, 0.082, "pale: co-moving", ha="right", fontsize=8.5, color="0.4")
+    return figure
+
+
+def _table(
+    windows: Sequence[tuple[tuple[float, float], Sequence[Homogeneous]]],
+) -> dict[str, Column]:
+    rows = [(window, one) for window, found in windows for one in found]
+    table: dict[str, Column] = {
+        "from_t0": [window[0] for window, _ in rows],
+        "to_t0": [window[1] for window, _ in rows],
+        "length_a0": [one.where.length for _, one in rows],
+        "colloids": [one.where.colloids for _, one in rows],
+        "seeds": [len(one.where.scenes) for _, one in rows],
+        "density_per_a0^2": [one.where.density for _, one in rows],
+    }
+    for name in ("rest", "co_moving", "frame", "coupling"):
+        found: list[Estimate] = [getattr(one, name) for _, one in rows]
+        table[name] = [one.value for one in found]
+        table[f"{name}_error"] = [one.error for one in found]
+    return table
+
+
+def _make(directories: Directories, quality: Quality) -> Outcome:
+    early = [homogeneous(directories, where, EARLY) for where in short_channels(quality)]
+    long = [homogeneous(directories, where, EARLY) for where in long_channels(quality)]
+    late = list[Homogeneous]()
+    if quality == "full":
+        late = [homogeneous(directories, where, LATE) for where in short_channels(quality)]
+    law = homogeneous_law(directories, quality)
+    results = _early_results(law, early, long) + (_late_results(late) if late else [])
+    table = _table([(EARLY, early), (EARLY, long), (LATE, late)])
+    return Outcome(_draw(early, long, late, law.speed), table, results)
+
+
+def _early_results(
+    law: Law,
+    early: Sequence[Homogeneous],
+    long: Sequence[Homogeneous],
+) -> list[Result]:
+    intercept, slope = law.speed.coefficients
+    everything = f"100 x 10, t from 12 to 300, rho up to 0.025; {law.speed.quality}"
+    moving = fit_quality(_densities(early), [one.co_moving for one in early])
+    parabola = fit_quality(_densities(early), [one.rest for one in early], degree=2)
+    results = [
+        compared(NUMBER, "c of v = c rho + c' at rest [a0^3/t0]", slope, REST_SLOPE, everything),
+        compared(
+            NUMBER, "c' of v = c rho + c' at rest [a0/t0]", intercept, REST_INTERCEPT, everything
+        ),
+        claimed(
+            NUMBER,
+            "coefficient of rho^2 of a parabola, at rest [a0^5/t0]",
+            parabola.coefficients[2],
+            "v is linear in rho, here up to close packing",
+            "zero",
+            parabola.quality,
+        ),
+        claimed(
+            NUMBER,
+            "d^2 J/d rho^2 = 2 c, the same in every frame [a0^3/t0]",
+            slope.scaled(2.0),
+            "J is convex: (5.3) with c > 0, an ASEP of negative p - q",
+            "positive",
+        ),
+        measured(
+            NUMBER,
+            "slope of the co-moving v_s over rho [a0^3/t0]",
+            moving.coefficients[1],
+            moving.quality,
+        ),
+        measured(
+            NUMBER,
+            "flux of the fluid per force, X [a0^3/t0]",
+            law.coupling.coefficients[0],
+            f"one constant: {law.coupling.quality}",
+        ),
+        measured(NUMBER, "permeability of the pure fluid, K [a0^3/t0]", law.permeability),
+    ]
+    shorter = {one.where.density: one.rest for one in early}
+    gaps = [difference(one.rest, shorter[one.where.density]) for one in long]
+    level = fit_quality(_densities(long), gaps, degree=0)
+    results.append(
+        claimed(
+            NUMBER,
+            "v at rest in 600 x 10 less in 100 x 10, mean [a0/t0]",
+            level.coefficients[0],
+            "J(rho) is no effect of the length of the box",
+            "zero",
+            level.quality,
+        )
+    )
+    return results
+
+
+def _late_results(late: Sequence[Homogeneous]) -> list[Result]:
+    line = fit_quality(_densities(late), [one.rest for one in late])
+    dense = [one for one in late if one.where.density >= ZIGZAG]
+    bend = fit_quality(_densities(dense), [one.rest for one in dense])
+    below = fit_quality(_densities(dense), [_below(one) for one in dense], degree=0)
+    return [
+        measured(
+            NUMBER,
+            "slope of v over rho at rest, t from 600 to 1100 [a0^3/t0]",
+            line.coefficients[1],
+            f"a line does not hold: {line.quality}",
+        ),
+        measured(
+            NUMBER,
+            f"the same for rho >= {ZIGZAG:g} only [a0^3/t0]",
+            bend.coefficients[1],
+            f"zigzag; {bend.quality}",
+        ),
+        claimed(
+            NUMBER,
+            "v of (5.3) less v at rho >= 0.018, t from 600 to 1100 [a0/t0]",
+            below.coefficients[0],
+            "v is linear in rho, here in the zigzag",
+            "zero",
+            "the zigzag is slower than the file: (5.3) ends where colloids leave the mid-line",
+        ),
+    ]
+
+
+def _below(one: Homogeneous) -> Estimate:
+    thesis = REST_SLOPE.value * one.where.density + REST_INTERCEPT.value
+    return difference(Estimate(thesis, 0.0), one.rest)
+
+
+FIGURES = (
+    PaperFigure(
+        NUMBER,
+        "Beyond the thesis: mean velocity and current of the colloids from dilute to a closed "
+        "file, at rest and co-moving.",
+        _make,
+        lambda quality: [*scenes(quality), *scenes_of(long_channels(quality))],
+    ),
+)

@@ -1,0 +1,53 @@
+"""The options by which commands take a scene and an engine."""
+
+from pathlib import Path
+from typing import Annotated, Any
+
+import typer
+
+from lammps_inputs import Scene, SceneError, engines, make_scene, parse_assignment, scenes
+from lammps_inputs.engines.engine import LammpsEngine
+from lammps_inputs.scene import read_scene
+
+SceneName = Annotated[str, typer.Argument(metavar="SCENE", help=" or ".join(scenes()))]
+SceneFile = Annotated[
+    Path | None, typer.Option("--scene", metavar="FILE.toml", help="fields of the scene")
+]
+Settings = Annotated[
+    list[str] | None,
+    typer.Option("--set", metavar="FIELD=VALUE", help="one field; wins over the file"),
+]
+ENGINES = "|".join(engines())
+DECKS = "|".join(name for name, each in engines().items() if isinstance(each, LammpsEngine))
+
+
+def scene_of(
+    name: str,
+    file: Path | None,
+    settings: list[str] | None,
+    stored: dict[str, Any] | None = None,
+) -> Scene:
+    """The scene of that name, from its file and settings, over what a run directory has stored.
+
+    Raises:
+        SceneError: naming each wrong field.
+    """
+    return make_scene(name, **scene_fields(name, file, settings, stored))
+
+
+def scene_fields(
+    name: str,
+    file: Path | None,
+    settings: list[str] | None,
+    stored: dict[str, Any] | None = None,
+) -> dict[str, Any]:
+    """The stored fields, those of the file and the settings, the later ones winning.
+
+    Raises:
+        SceneError: when the file cannot be read or is of another scene, or a setting has no form.
+    """
+    fields = (stored or {}) | (read_scene(file) if file else {})
+    fields |= dict(parse_assignment(text) for text in settings or [])
+    if fields.get("scene", name) != name:
+        raise SceneError.of_field("scene", fields["scene"], f"the command line says {name!r}")
+    return {field: fields[field] for field in fields if field != "scene"}

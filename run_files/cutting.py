@@ -1,0 +1,57 @@
+"""Cutting output files back to a step, so that a resumed run leaves no gap and nothing twice."""
+
+from collections.abc import Iterator
+from pathlib import Path
+
+from run_files.reading import refuse
+
+
+def cut_output(path: Path, kind: str, step: int) -> None:
+    """Drop what the file of an output says of the time after a step; a missing one is left.
+
+    A trajectory loses the frame of the step too: the engine writes that one again.
+
+    Raises:
+        RunDirectoryError: when the file holds something else.
+    """
+    if path.exists():
+        size = _first_frame(path, step) if kind == "trajectory" else _first_row(path, step)
+        with path.open("r+b") as file:
+            file.truncate(size)
+
+
+def _lines(path: Path) -> Iterator[tuple[int, bytes]]:
+    """The lines of a file, each with the offset it begins at."""
+    offset = 0
+    with path.open("rb") as file:
+        for line in file:
+            yield offset, line
+            offset += len(line)
+
+
+def _first_frame(path: Path, step: int) -> int:
+    frame: int | None = None
+    for offset, line in _lines(path):
+        if line.startswith(b"ITEM: TIMESTEP"):
+            frame = offset
+        elif frame is not None:
+            if not line.endswith(b"\n") or _number(line, path) >= step:
+                return frame
+            frame = None
+    return path.stat().st_size if frame is None else frame
+
+
+def _first_row(path: Path, step: int) -> int:
+    for offset, line in _lines(path):
+        if not line.endswith(b"\n"):
+            return offset
+        if not line.startswith((b"#", b" ")) and _number(line, path) > step:
+            return offset
+    return path.stat().st_size
+
+
+def _number(line: bytes, path: Path) -> int:
+    try:
+        return int(line.split()[0])
+    except (ValueError, IndexError):
+        refuse(path, f"{line[:40]!r} where a step should be")

@@ -1,0 +1,28 @@
+"""Names in our files that become paths: each has one form, and none leaves its directory."""
+
+import re
+from pathlib import Path
+
+CHECKPOINT = re.compile(r"checkpoint\.(\d{1,19})\.(restart|npz)")
+LONGEST_NAME = 255  # bytes, of most file systems
+
+
+def checkpoint_name(step: int, suffix: str) -> str:
+    """`checkpoint.15000.restart`."""
+    return f"checkpoint.{step}.{suffix}"
+
+
+def is_checkpoint(name: str, step: int) -> bool:
+    """Whether this is the name of a checkpoint of that step."""
+    match = CHECKPOINT.fullmatch(name)
+    return match is not None and name == checkpoint_name(step, match[2])
+
+
+def is_run_name(name: str) -> bool:
+    """Whether this may name a run directory within a sweep: one visible, printable word."""
+    return (
+        name.isprintable()
+        and 0 < len(name.encode()) <= LONGEST_NAME
+        and not name.startswith((".", "-"))
+        and Path(name).name == name
+    )

@@ -1,0 +1,16 @@
+"""Writing a file whole: a reader, or a kill, meets the old content or the new, never half."""
+
+import os
+from pathlib import Path
+
+
+def draft_of(path: Path) -> Path:
+    """Where the new content of a file is written before it takes its place."""
+    return path.with_name(f".{path.name}.draft")
+
+
+def replace_text(path: Path, text: str) -> None:
+    """Write a text file and put it in the place of the old one."""
+    draft = draft_of(path)
+    draft.write_text(text, encoding="utf-8", newline="")
+    os.replace(draft, path)
