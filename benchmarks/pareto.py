@@ -25,16 +25,16 @@ from statistics import median
 from typing import Any
 
 import numpy as np
+from analysis.summary import summary_of
 from matplotlib.figure import Figure
 from processor_time import cost, endless
+from srd_driver.run_directory import replace_text
 
 from analysis.blocking import Estimate
-from analysis.summary import summary_of
 from analysis.sweep_table import combine
 from lammps_inputs import Scene, make_scene
 from lammps_inputs.deck import Engine
 from lammps_inputs.viscosity import viscosity
-from srd_driver.run_directory import replace_text
 from srd_driver.sweep import Run, available_cores, run_all
 
 BUDGET, QUICK_BUDGET = 6.0, 2.0  # processor seconds of a setting

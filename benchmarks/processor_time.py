@@ -18,7 +18,7 @@ def endless(scene: Scene, engine: Engine) -> Simulation:
 
 def interval(scene: Scene) -> float:
     """Time between two outputs [t0]."""
-    return scene.sample_steps * scene.time_step
+    return scene.system.clock.sample_steps * scene.system.clock.time_step
 
 
 def cost(simulation: Simulation, at_least: float) -> float:

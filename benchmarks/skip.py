@@ -92,8 +92,8 @@ class EditedDeck:
     """A deck in LAMMPS without the driver, and without the lines that have any of some words."""
 
     def __init__(self, scene: Scene, engine: Engine, left_out: tuple[str, ...]) -> None:
-        self._time_step = scene.time_step
-        self._steps = scene.sample_steps
+        self._time_step = scene.system.clock.time_step
+        self._steps = scene.system.clock.sample_steps
         self._folder = TemporaryDirectory()
         with contextlib.chdir(self._folder.name):
             write_deck(scene, Path(), engine)

@@ -24,10 +24,10 @@ from dataclasses import dataclass, field, replace
 from pathlib import Path
 from typing import Any, Literal
 
+from analysis.summary import summary_of
 from matplotlib.figure import Figure
 
 from analysis import RunDirectoryError
-from analysis.summary import summary_of
 from lammps_inputs import SceneError, make_scene
 from lammps_inputs.deck import Engine, check_engine
 from lammps_inputs.limits import warnings

@@ -7,46 +7,55 @@ docs/run-directory.md; the driver runs the very same lines.
 from collections.abc import Iterator
 from pathlib import Path
 
-from lammps_inputs.engines.engine import Engine, LammpsEngine, Start
+from lammps_inputs.engines import engine_named, lammps_engine_named
+from lammps_inputs.engines.engine import LammpsEngine, Start
 from lammps_inputs.engines.lammps import table, trajectory
 from lammps_inputs.initial_state import initial_state
 from lammps_inputs.scene import Scene, SceneError
 from lammps_inputs.system import System
 
 
-def check_engine(scene: Scene, engine: Engine) -> None:
-    """Refuse what an engine cannot do.
+def check_engine(scene: Scene, engine: str) -> None:
+    """Refuse what the engine of that name cannot do.
 
     Raises:
         SceneError: naming the field or part, its value and what the engine allows.
     """
-    problems = list(engine.problems(scene.system))
+    problems = list(engine_named(engine).problems(scene.system))
     if problems:
         raise SceneError(problems)
 
 
-def warnings(scene: Scene, engine: Engine) -> Iterator[str]:
+def warnings(scene: Scene, engine: str) -> Iterator[str]:
     """What will be inaccurate, one line each: field, value and reason."""
     yield from scene.warnings()
-    yield from engine.warnings(scene.system)
+    yield from engine_named(engine).warnings(scene.system)
 
 
-def write_deck(scene: Scene, directory: Path, engine: Engine) -> None:
-    """Write the input script and what it reads into a folder; nothing for an engine without decks.
+def write_deck(scene: Scene, directory: Path, engine: str) -> None:
+    """Write the input script and what it reads into a folder.
 
     Raises:
-        SceneError: when the engine cannot run the scene.
+        SceneError: when the engine cannot run the scene, or writes no decks.
     """
     check_engine(scene, engine)
-    if isinstance(engine, LammpsEngine):
-        (directory / "in.lammps").write_text(script(scene, engine), encoding="utf-8")
-        state = initial_state(scene.system, scene.seed)
-        engine.write(scene.system, state, scene.name, directory)
+    (directory / "in.lammps").write_text(script(scene, engine), encoding="utf-8")
+    state = initial_state(scene.system, scene.seed)
+    lammps_engine_named(engine).write(scene.system, state, scene.name, directory)
 
 
-def script(scene: Scene, engine: LammpsEngine, start: Start | None = None) -> str:
-    """The input script; its last command is the `run`."""
-    return "\n".join(_lines(scene, engine, start or Start())) + "\n"
+def script(scene: Scene, engine: str, start: Start | None = None) -> str:
+    """The input script; its last command is the `run`.
+
+    Raises:
+        SceneError: when the engine writes no decks.
+    """
+    return "\n".join(_lines(scene, lammps_engine_named(engine), start or Start())) + "\n"
+
+
+def has_deck(engine: str) -> bool:
+    """Whether LAMMPS runs the engine of that name."""
+    return isinstance(engine_named(engine), LammpsEngine)
 
 
 def _lines(scene: Scene, engine: LammpsEngine, start: Start) -> Iterator[str]:

@@ -3,7 +3,7 @@
 from dataclasses import asdict, fields, is_dataclass
 from typing import Any
 
-from lammps_inputs.engines.engine import Engine
+from lammps_inputs.engines import engine_named
 from lammps_inputs.scene import Scene
 from lammps_inputs.system import System
 from lammps_inputs.viscosity import viscosity_theory
@@ -13,16 +13,16 @@ FORMAT = 2  # of the manifest
 UNITS = {"length": "a0", "energy": "kBT", "mass": "m_f", "time": "a0 sqrt(m_f/kBT)"}
 
 
-def manifest(scene: Scene, engine: Engine) -> dict[str, Any]:
+def manifest(scene: Scene, engine: str) -> dict[str, Any]:
     """All that analysis needs to know of a run, as JSON has it."""
     return {
         "format": FORMAT,
-        "engine": engine.name,
+        "engine": engine,
         "scene": scene.name,
         "fields": scene.model_dump(),
         "units": UNITS,
         "system": _system(scene.system),
-        "seeds": {"seed": scene.seed, **engine.seeds(scene.seed, step=0)},
+        "seeds": {"seed": scene.seed, **engine_named(engine).seeds(scene.seed, step=0)},
     }
 
 

@@ -5,9 +5,8 @@ from pathlib import Path
 from typing import Any
 
 import lammps_plugin
-from lammps_inputs import Scene
-from lammps_inputs.deck import check_engine
-from lammps_inputs.engines.engine import Engine, LammpsEngine
+from lammps_inputs import Scene, engine_named
+from lammps_inputs.deck import check_engine, has_deck
 from run_files.progress import Progress
 from srd_driver.errors import RunError
 from srd_driver.session import Session
@@ -15,21 +14,21 @@ from srd_driver.session import Session
 SESSIONS = {"reference": "srd_driver.reference_session:ReferenceSession"}
 
 
-def require_engine(scene: Scene, engine: Engine, processes: int = 1) -> None:
+def require_engine(scene: Scene, engine: str, processes: int = 1) -> None:
     """Refuse a scene that the engine cannot run, or an engine that cannot run here.
 
     Raises:
         SceneError: naming the field or part, its value and what the engine allows.
         RunError: without the plugin that it needs, or for more processes than it takes.
     """
-    if processes > 1 and not engine.processes:
+    if processes > 1 and not engine_named(engine).processes:
         raise RunError(
-            f"the {engine.name} engine runs on one process; use the default engine with mpirun"
+            f"the {engine} engine runs on one process; use the default engine with mpirun"
         )
     check_engine(scene, engine)
-    if engine.plugin and not lammps_plugin.folder():
+    if engine_named(engine).plugin and not lammps_plugin.folder():
         raise RunError(
-            f"engine {engine.name} needs the LAMMPS plugin, which was not built when narrows was "
+            f"engine {engine} needs the LAMMPS plugin, which was not built when narrows was "
             "installed: install a C++17 compiler, then narrows again with "
             "NARROWS_REQUIRE_PLUGIN=1; or use --engine srd"
         )
@@ -37,7 +36,7 @@ def require_engine(scene: Scene, engine: Engine, processes: int = 1) -> None:
 
 def start_session(
     scene: Scene,
-    engine: Engine,
+    engine: str,
     directory: Path,
     progress: Progress,
     checkpoint_steps: int,
@@ -48,10 +47,10 @@ def start_session(
     Raises:
         RunError: when it cannot start.
     """
-    if isinstance(engine, LammpsEngine):
+    if has_deck(engine):
         from srd_driver.lammps_session import LammpsSession
 
         return LammpsSession(scene, engine, directory, progress, checkpoint_steps, comm)
-    module, _, name = SESSIONS[engine.name].partition(":")
+    module, _, name = SESSIONS[engine].partition(":")
     session: Session = getattr(importlib.import_module(module), name)(scene, directory, progress)
     return session

@@ -7,7 +7,7 @@ from typing import Any
 
 from lammps_inputs import Scene
 from lammps_inputs.deck import script
-from lammps_inputs.engines.engine import LammpsEngine, Start
+from lammps_inputs.engines.engine import Start
 from lammps_inputs.engines.lammps import particle_group
 from run_files.progress import Progress
 from srd_driver.errors import RunError
@@ -28,7 +28,7 @@ class LammpsSession:
     def __init__(
         self,
         scene: Scene,
-        engine: LammpsEngine,
+        engine: str,
         directory: Path,
         progress: Progress,
         checkpoint_steps: int,

@@ -9,8 +9,7 @@ from pathlib import Path
 from typing import Any, TextIO
 
 from lammps_inputs import Scene
-from lammps_inputs.deck import script, write_deck
-from lammps_inputs.engines.engine import Engine, LammpsEngine
+from lammps_inputs.deck import check_engine, has_deck, script, write_deck
 from lammps_inputs.manifest import manifest
 from run_files.cutting import cut_output
 from run_files.manifest import NAME as MANIFEST
@@ -54,7 +53,7 @@ def _require_empty(directory: Path) -> None:
         )
 
 
-def create(scene: Scene, engine: Engine, directory: Path, ranks: int) -> Progress:
+def create(scene: Scene, engine: str, directory: Path, ranks: int) -> Progress:
     """Write the run directory of a new run; over one that a kill left half made.
 
     Raises:
@@ -62,14 +61,16 @@ def create(scene: Scene, engine: Engine, directory: Path, ranks: int) -> Progres
         RunError: when the directory cannot be written.
     """
     try:
+        check_engine(scene, engine)
         write_scene(scene, engine, directory, ranks)
-        write_deck(scene, directory, engine)
+        if has_deck(engine):
+            write_deck(scene, directory, engine)
         return write_progress(directory, Progress())
     except OSError as error:
         raise RunError(f"cannot write {directory}: {error.strerror or error}") from None
 
 
-def reopen(scene: Scene, engine: Engine, directory: Path, ranks: int) -> Progress:
+def reopen(scene: Scene, engine: str, directory: Path, ranks: int) -> Progress:
     """Take up a run at its newest checkpoint: output written after it is cut off.
 
     Raises:
@@ -86,7 +87,7 @@ def reopen(scene: Scene, engine: Engine, directory: Path, ranks: int) -> Progres
             write_progress(directory, progress)  # drops a checkpoint that a kill left half written
             for output in scene.system.outputs:
                 cut_output(directory / output.file, output.kind, progress.step)
-            if isinstance(engine, LammpsEngine):
+            if has_deck(engine):
                 replace_text(directory / "in.lammps", script(scene, engine))
             write_scene(scene, engine, directory, ranks)
         except OSError as error:
@@ -134,7 +135,7 @@ def _last_label(path: Path) -> int:
     return int(labels[-1]) if labels and labels[-1].isdigit() else 0
 
 
-def refuse_another_scene(scene: Scene, engine: Engine, directory: Path) -> None:
+def refuse_another_scene(scene: Scene, engine: str, directory: Path) -> None:
     """Let only the scene and engine of a run directory pass; its duration may change.
 
     Raises:
@@ -144,8 +145,8 @@ def refuse_another_scene(scene: Scene, engine: Engine, directory: Path) -> None:
     there = read_manifest(directory)
     if there.scene != scene.name:
         raise RunError(f"{directory} holds another scene than {scene.name}")
-    if there.engine != engine.name:
-        raise RunError(f"{directory} was run by the engine {there.engine}, not {engine.name}")
+    if there.engine != engine:
+        raise RunError(f"{directory} was run by the engine {there.engine}, not {engine}")
     asked = json.loads(scene.model_dump_json())
     other = [
         f"{field} = {there.fields.get(field)!r} there, {asked[field]!r} here"
@@ -156,7 +157,7 @@ def refuse_another_scene(scene: Scene, engine: Engine, directory: Path) -> None:
         raise RunError(f"{directory} holds another scene: " + "; ".join(other))
 
 
-def write_scene(scene: Scene, engine: Engine, directory: Path, ranks: int = 1) -> None:
+def write_scene(scene: Scene, engine: str, directory: Path, ranks: int = 1) -> None:
     """Write scene.toml and manifest.json.
 
     Raises:

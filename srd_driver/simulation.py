@@ -9,7 +9,7 @@ from pathlib import Path
 from types import TracebackType
 from typing import Any, Self, TextIO
 
-from lammps_inputs import Scene, engine_named
+from lammps_inputs import Scene
 from lammps_inputs.engines import DEFAULT
 from run_files.names import checkpoint_name
 from run_files.progress import Progress, is_begun, write_failure, write_progress
@@ -54,10 +54,9 @@ class Simulation:
     ) -> None:
         self.scene = scene
         self.engine = engine
-        self._engine = engine_named(engine)
         self._clock = scene.system.clock
         self._comm = communicator()
-        require_engine(scene, self._engine, self._comm.size)
+        require_engine(scene, self.engine, self._comm.size)
         self._temporary: tempfile.TemporaryDirectory[str] | None = None
         self._lock: TextIO | None = None
         self._session: Session | None = None
@@ -78,7 +77,7 @@ class Simulation:
             try:
                 self._session = start_session(
                     scene,
-                    self._engine,
+                    self.engine,
                     self.directory,
                     self._progress,
                     self._checkpoint_steps,
@@ -96,8 +95,8 @@ class Simulation:
         ranks = self._comm.size
         self._lock = run_directory.take(directory, resume)
         if resume and is_begun(directory):
-            return directory, run_directory.reopen(self.scene, self._engine, directory, ranks)
-        return directory, run_directory.create(self.scene, self._engine, directory, ranks)
+            return directory, run_directory.reopen(self.scene, self.engine, directory, ranks)
+        return directory, run_directory.create(self.scene, self.engine, directory, ranks)
 
     @property
     def rank(self) -> int:

@@ -4,7 +4,7 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Literal
 
-from lammps_inputs import engine_named, make_scene
+from lammps_inputs import make_scene
 from run_files.manifest import read_manifest
 from run_files.progress import is_begun, read_failure, read_progress
 from srd_driver.resume import newest_step, stored_fields
@@ -67,4 +67,4 @@ def stored_run(directory: Path) -> Run:
     """
     fields = stored_fields(directory)
     scene = make_scene(str(fields.pop("scene", None)), **fields)
-    return Run(directory, scene, engine_named(read_manifest(directory).engine))
+    return Run(directory, scene, read_manifest(directory).engine)

@@ -13,7 +13,6 @@ from dataclasses import dataclass
 from pathlib import Path
 
 from lammps_inputs import Scene
-from lammps_inputs.engines.engine import Engine
 from run_files.progress import is_begun, read_progress, write_failure
 from srd_driver import worker
 from srd_driver.resume import newest_step, refuse_another_scene
@@ -29,7 +28,7 @@ class Run:
 
     folder: Path
     scene: Scene
-    engine: Engine
+    engine: str
 
 
 @dataclass(frozen=True)

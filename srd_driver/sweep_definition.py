@@ -10,7 +10,6 @@ from pathlib import Path
 from typing import Any
 
 from lammps_inputs import SceneError, engine_named, make_scene
-from lammps_inputs.engines.engine import Engine
 from run_files.sweep_file import NAME, SweepFile, SweptRun, is_sweep, read_sweep, write_sweep
 from srd_driver.engines import require_engine
 from srd_driver.errors import RunError
@@ -23,7 +22,7 @@ class Sweep:
 
     directory: Path
     scene: str
-    engine: Engine
+    engine: str
     over: tuple[str, ...]
     runs: tuple[Run, ...]
 
@@ -49,7 +48,6 @@ def plan(
     """
     if "seed" in over and repeats > 1:
         raise SceneError.of_field("repeats", repeats, "must be 1 where the seed is swept")
-    runs_by = engine_named(engine)
     runs: dict[str, Run] = {}
     problems: dict[str, list[str]] = {}
     for values in itertools.product(*over.values()):
@@ -61,18 +59,18 @@ def plan(
                 run_scene = make_scene(
                     scene, **(first.model_dump() | {"seed": first.seed + repeat})
                 )
-                require_engine(run_scene, runs_by)
+                require_engine(run_scene, engine)
                 names = [*over, "seed"] if "seed" not in over else over
                 name = _label({field: getattr(run_scene, field) for field in names})
                 if name in runs:
                     raise SceneError(["given twice"])
-                runs[name] = Run(directory / name, run_scene, runs_by)
+                runs[name] = Run(directory / name, run_scene, engine)
         except SceneError as error:
             for problem in error.problems:
                 problems.setdefault(problem, []).append(label)
     if problems:
         raise SceneError(f"{_points(labels)}: {text}" for text, labels in problems.items())
-    return Sweep(directory, scene, runs_by, tuple(over), tuple(runs.values()))
+    return Sweep(directory, scene, engine, tuple(over), tuple(runs.values()))
 
 
 def store(sweep: Sweep) -> Sweep:
@@ -92,8 +90,8 @@ def store(sweep: Sweep) -> Sweep:
         before = read(directory)
         if (before.scene, before.engine) != (sweep.scene, sweep.engine):
             raise RunError(
-                f"{directory} holds a sweep of {before.scene} by the engine {before.engine.name}, "
-                f"not of {sweep.scene} by {sweep.engine.name}: choose another folder"
+                f"{directory} holds a sweep of {before.scene} by the engine {before.engine}, "
+                f"not of {sweep.scene} by {sweep.engine}: choose another folder"
             )
         over = tuple(dict.fromkeys(before.over + sweep.over))
         runs = {run.folder: run for run in before.runs + sweep.runs}
@@ -110,7 +108,7 @@ def store(sweep: Sweep) -> Sweep:
     }
     write_sweep(
         directory,
-        SweepFile(scene=sweep.scene, engine=sweep.engine.name, over=sweep.over, runs=runs_of_file),
+        SweepFile(scene=sweep.scene, engine=sweep.engine, over=sweep.over, runs=runs_of_file),
     )
     return sweep
 
@@ -124,14 +122,14 @@ def read(directory: Path) -> Sweep:
     """
     content = read_sweep(directory)
     try:
-        engine = engine_named(content.engine)
+        engine_named(content.engine)
         runs = tuple(
-            Run(directory / name, make_scene(content.scene, **run.fields), engine)
+            Run(directory / name, make_scene(content.scene, **run.fields), content.engine)
             for name, run in content.runs.items()
         )
     except (SceneError, TypeError) as error:
         raise RunError(f"{directory / NAME} is not that of a sweep: {error}") from None
-    return Sweep(directory, content.scene, engine, content.over, runs)
+    return Sweep(directory, content.scene, content.engine, content.over, runs)
 
 
 def _label(point: Mapping[str, Any]) -> str:

@@ -10,19 +10,18 @@ from pathlib import Path
 from typing import Any
 
 from lammps_inputs import Scene, SceneError, make_scene
-from lammps_inputs.engines.engine import Engine
 from run_files import RunDirectoryError
 from srd_driver.errors import RunError
 from srd_driver.signals import stopped_by_signals
 from srd_driver.simulation import Simulation
 
 
-def command(directory: Path, scene: Scene, engine: Engine) -> list[str]:
+def command(directory: Path, scene: Scene, engine: str) -> list[str]:
     """The command that begins the run or goes on with it; it may be given again and again."""
     task = {
         "directory": str(directory),
         "scene": scene.name,
-        "engine": engine.name,
+        "engine": engine,
         "fields": scene.model_dump(mode="json"),
     }
     return [sys.executable, "-m", __name__, json.dumps(task)]

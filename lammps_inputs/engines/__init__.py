@@ -7,7 +7,7 @@ import importlib
 import pkgutil
 from functools import cache
 
-from lammps_inputs.engines.engine import Engine
+from lammps_inputs.engines.engine import Engine, LammpsEngine
 from lammps_inputs.scene import SceneError
 
 DEFAULT = "mpc"
@@ -33,3 +33,16 @@ def engine_named(name: str) -> Engine:
     if name not in engines():
         raise SceneError.of_field("engine", name, f"must be one of {', '.join(engines())}")
     return engines()[name]
+
+
+def lammps_engine_named(name: str) -> LammpsEngine:
+    """The engine of that name, which writes decks.
+
+    Raises:
+        SceneError: for an unknown name, or an engine without decks.
+    """
+    engine = engine_named(name)
+    if not isinstance(engine, LammpsEngine):
+        known = [each.name for each in engines().values() if isinstance(each, LammpsEngine)]
+        raise SceneError.of_field("engine", name, f"has no deck; {', '.join(known)} have one")
+    return engine

@@ -6,10 +6,8 @@ from typing import Annotated
 import typer
 
 import lammps_plugin
-from lammps_inputs import SceneError, engine_named
 from lammps_inputs.deck import warnings, write_deck
-from lammps_inputs.engines import DEFAULT
-from lammps_inputs.engines.engine import LammpsEngine
+from lammps_inputs.engines import DEFAULT, lammps_engine_named
 from narrows.messages import say, user_errors, warn
 from narrows.scene_options import DECKS, SceneFile, SceneName, Settings, scene_of
 from srd_driver import RunError
@@ -25,15 +23,13 @@ def deck(
 ) -> None:
     """Write a folder that runs with `lmp -in in.lammps`."""
     with user_errors():
-        chosen, written_by = scene_of(scene, file, settings), engine_named(engine)
-        if not isinstance(written_by, LammpsEngine):
-            raise SceneError.of_field("engine", engine, f"writes no deck; must be one of {DECKS}")
-        warn(warnings(chosen, written_by))
+        chosen, plugin = scene_of(scene, file, settings), lammps_engine_named(engine).plugin
+        warn(warnings(chosen, engine))
         out.mkdir(parents=True, exist_ok=True)
         if any(out.iterdir()):
             raise RunError(f"{out} is not empty: choose another folder")
-        write_deck(chosen, out, written_by)
-        write_scene(chosen, written_by, out)
+        write_deck(chosen, out, engine)
+        write_scene(chosen, engine, out)
         say(f"{out}: run it there with  lmp -in in.lammps  or  mpirun -np 2 lmp -in in.lammps")
-        if written_by.plugin and not lammps_plugin.folder():
+        if plugin and not lammps_plugin.folder():
             say("lmp needs our plugin, which was not built here: see narrows run")

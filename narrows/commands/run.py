@@ -5,7 +5,6 @@ from typing import Annotated, Any
 
 import typer
 
-from lammps_inputs import engine_named
 from lammps_inputs.deck import warnings
 from lammps_inputs.engines import DEFAULT
 from narrows.messages import say, user_errors, warn
@@ -39,7 +38,7 @@ def run(
         )
         chosen = scene_of(scene, file, settings, stored)
         engine = engine or engine_before or DEFAULT
-        warn(warnings(chosen, engine_named(engine)))
+        warn(warnings(chosen, engine))
         with (
             Simulation(chosen, engine, out, resume, checkpoint_interval) as simulation,
             stopped_by_signals(simulation),

@@ -107,7 +107,7 @@ def _command(run: Run) -> list[str]:
         if value != default[name] or name in CHANGEABLE
     ]
     return [
-        *(sys.executable, "-m", "narrows", "run", run.scene.name, "--engine", run.engine.name),
+        *(sys.executable, "-m", "narrows", "run", run.scene.name, "--engine", run.engine),
         *(word for setting in settings for word in ("--set", setting)),
         *("--out", str(run.folder), "--resume"),
     ]

@@ -15,7 +15,6 @@ import matplotlib
 
 from analysis import RunDirectory, RunDirectoryError
 from lammps_inputs import Scene
-from lammps_inputs.engines import engine_named
 from narrows.papers.drawing import STYLE
 from narrows.papers.figure import Outcome, Paper, PaperFigure, Quality
 from narrows.papers.page import Made, Report, write_page
@@ -42,7 +41,7 @@ def run_of(scene: Scene, engine: str, out: Path) -> Run:
     system = scene.system
     sizes = "x".join(f"{size:g}" for size in system.box.sizes)
     name = f"{scene.name}-{sizes}-{system.particles or 'no'}-{digest}"
-    return Run(out / "runs" / name, scene, engine_named(engine))
+    return Run(out / "runs" / name, scene, engine)
 
 
 @dataclass

@@ -9,7 +9,7 @@ import pytest
 
 from lammps_inputs import Scene, initial_state, make_scene, srd_deck
 from lammps_inputs.deck import script, write_deck
-from lammps_inputs.deck_lines import Start
+from lammps_inputs.engines.engine import Start
 from tests.conftest import Run
 
 SCENES = {
@@ -56,7 +56,9 @@ def test_a_deck_of_every_scene_runs_with_plain_lmp(
         trajectory = frames(tmp_path / "trajectory.lammpsdump")
         assert list(trajectory) == list(range(0, steps + 1, sample))
         first = trajectory[0]
-        np.testing.assert_allclose(first[:, 2:4], initial_state(one).colloid_positions, rtol=1e-9)
+        np.testing.assert_allclose(
+            first[:, 2:4], initial_state(one.system, one.seed).colloid_positions, rtol=1e-9
+        )
         assert (np.array([frame[:, 3] for frame in trajectory.values()]) > 1).all()
 
 

@@ -8,7 +8,7 @@ import pytest
 from lammps_inputs import SceneError, make_scene
 from lammps_inputs.deck import Engine, check_engine, script
 from lammps_inputs.limits import warnings
-from lammps_inputs.potentials import IntegratedWall
+from lammps_inputs.potentials.integrated_wall import IntegratedWall
 
 
 @pytest.mark.parametrize("name", ["channel", "poiseuille", "bulk"])

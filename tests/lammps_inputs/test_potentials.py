@@ -11,7 +11,8 @@ from numpy.testing import assert_allclose
 from scipy.integrate import quad
 from scipy.optimize import minimize_scalar
 
-from lammps_inputs.potentials import IntegratedWall, RepulsiveMie
+from lammps_inputs.potentials.integrated_wall import IntegratedWall
+from lammps_inputs.potentials.repulsive_mie import RepulsiveMie
 from srd_driver.parallel import communicator
 
 COLLOID_COLLOID = RepulsiveMie(sigma=4.0, exponent=24)

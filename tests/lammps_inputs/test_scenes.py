@@ -110,7 +110,7 @@ def test_defaults_are_the_papers() -> None:
 
 def test_density_counts_per_free_cell() -> None:
     scene = make_scene("channel", length=300, colloids=31, spacing=5)
-    assert scene.fluid_particles == round(10 * (3000 - 31 * math.pi * 4)) == 26104
+    assert scene.system.solvent.particles == round(10 * (3000 - 31 * math.pi * 4)) == 26104
 
 
 @pytest.mark.parametrize("name", ["channel", "poiseuille", "bulk"])
@@ -152,9 +152,9 @@ def test_a_run_is_whole_sampling_intervals_and_not_too_short(
     scene = make_scene(
         "channel", sampling_interval=sampling, duration=duration, equilibration=equilibration
     )
-    assert scene.collisions % scene.collisions_per_sample == 0
-    time = scene.collisions * scene.collision_time
-    interval = scene.collisions_per_sample * scene.collision_time
+    assert scene.system.clock.collisions % scene.system.clock.collisions_per_sample == 0
+    time = scene.system.clock.collisions * scene.collision_time
+    interval = scene.system.clock.collisions_per_sample * scene.collision_time
     assert abs(interval - sampling) <= 0.5 * scene.collision_time * (1 + 1e-9)
     assert -1e-6 <= time - (duration + equilibration) < interval * (1 + 1e-6)
 
@@ -167,14 +167,14 @@ def test_a_run_is_whole_sampling_intervals_and_not_too_short(
         make_scene("bulk", shear_wave=0.3),
         make_scene("bulk", dimension=3, length=10, width=8, height=6),
     ],
-    ids=lambda scene: f"{scene.name}{scene.dimensions}",
+    ids=lambda scene: f"{scene.name}{scene.system.box.dimensions}",
 )
 def test_initial_state(scene: Any) -> None:
-    state = initial_state(scene)
+    state = initial_state(scene.system, scene.seed)
     x, v = state.fluid_positions, state.fluid_velocities
-    assert x.shape == v.shape == (scene.fluid_particles, scene.dimensions)
+    assert x.shape == v.shape == (scene.system.solvent.particles, scene.system.box.dimensions)
     assert (x >= 0).all()
-    assert (x < np.array(scene.box)).all()
+    assert (x < np.array(scene.system.box.sizes)).all()
     momentum = v.sum(axis=0)
     for centre, velocity in zip(state.colloid_positions, state.colloid_velocities, strict=True):
         apart = x - centre
@@ -187,17 +187,22 @@ def test_initial_state(scene: Any) -> None:
     if scene.name == "bulk":
         thermal[:, 0] -= scene.shear_wave * np.sin(2 * np.pi * x[:, 1] / scene.width)
     assert abs((thermal**2).mean() - 1) < 5 * math.sqrt(2 / v.size)
-    again = initial_state(scene)
+    again = initial_state(scene.system, scene.seed)
     np.testing.assert_array_equal(again.fluid_positions, x)
 
 
 def test_initial_fluid_fills_the_free_space_evenly() -> None:
     """Chi-square of particle counts in quarter cells far from and between colloids."""
     scene = make_scene("channel", density=100)
-    x = initial_state(scene).fluid_positions
+    x = initial_state(scene.system, scene.seed).fluid_positions
     counts = np.histogram2d(*x.T, bins=(80, 20), range=((0, 40), (0, 10)))[0]
     centres = np.stack(np.meshgrid(np.arange(80) / 2 + 0.25, np.arange(20) / 2 + 0.25), axis=-1)
-    apart = np.array([np.hypot(*(centres - c).T) for c in initial_state(scene).colloid_positions])
+    apart = np.array(
+        [
+            np.hypot(*(centres - c).T)
+            for c in initial_state(scene.system, scene.seed).colloid_positions
+        ]
+    )
     free = counts[(apart > 2 + 0.36).all(axis=0)]
     chi_square = ((free - 25) ** 2 / 25).sum()
     assert abs(chi_square - free.size) < 5 * math.sqrt(2 * free.size)

@@ -9,7 +9,7 @@ from numpy.typing import NDArray
 
 from lammps_inputs import Scene
 from lammps_inputs.deck import script, write_deck
-from lammps_inputs.deck_lines import Start
+from lammps_inputs.engines.engine import Start
 from tests.conftest import Run
 
 Array = NDArray[np.float64]
@@ -47,7 +47,9 @@ def largest_difference(one: HasState, other: HasState, scene: Scene) -> float:
         if not len(mine):
             continue
         apart = mine - theirs
-        for axis, (size, periodic) in enumerate(zip(scene.box, scene.periodic, strict=True)):
+        for axis, (size, periodic) in enumerate(
+            zip(scene.system.box.sizes, scene.system.box.periodic, strict=True)
+        ):
             if periodic:
                 apart[:, axis] -= size * np.round(apart[:, axis] / size)
         mine, theirs = (getattr(state, f"{kind}_velocities") for state in (one, other))
@@ -86,7 +88,7 @@ def run_mpc(
         )
         deck.write(end)
     launcher = ["mpirun", "-np", str(ranks)] if ranks > 1 else []
-    steps = str(collisions * scene.steps_per_collision)
+    steps = str(collisions * scene.system.clock.steps_per_collision)
     command(*launcher, "lmp", "-in", "in.lammps", "-var", "steps", steps, cwd=folder)
     return read_state(folder)
 

@@ -13,7 +13,7 @@ import pytest
 from numpy.typing import NDArray
 
 from lammps_inputs import make_scene
-from lammps_inputs.potentials import RepulsiveMie
+from lammps_inputs.potentials.repulsive_mie import RepulsiveMie
 from srd_driver import Simulation
 from srd_driver.parallel import communicator
 from tests.plugin.fluid import read_fluid
@@ -202,7 +202,7 @@ def test_settling_speed_is_linear_in_gravity(tmp_path: Path) -> None:
             speed = (simulation.mean_colloid_position() - start) / (simulation.time - began)
         rows = np.loadtxt(tmp_path / "run" / "observables.dat")
         shutil.rmtree(tmp_path / "run")
-        return float(speed - rows[rows[:, 0] * scene.time_step > 100, 2].mean())
+        return float(speed - rows[rows[:, 0] * scene.system.clock.time_step > 100, 2].mean())
 
     gravities = np.array([0.02, 0.05, 0.1, 0.2])
     speeds = np.array([settling_speed(gravity=gravity) for gravity in gravities])

@@ -10,7 +10,7 @@ import numpy as np
 import pytest
 
 from lammps_inputs import make_scene
-from lammps_inputs.deck_lines import Start
+from lammps_inputs.engines.engine import Start
 from tests.conftest import Run
 from tests.plugin.fluid import State, largest_difference, run_mpc
 

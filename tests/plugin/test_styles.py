@@ -9,8 +9,8 @@ import pytest
 
 from lammps_inputs import InitialState, make_scene
 from lammps_inputs.deck import write_deck
-from lammps_inputs.mpc_deck import fluid_file
-from lammps_inputs.potentials import IntegratedWall
+from lammps_inputs.engines.mpc import fluid_file
+from lammps_inputs.potentials.integrated_wall import IntegratedWall
 from srd_driver.parallel import communicator
 from tests.conftest import Run
 from tests.plugin.fluid import read_fluid, run_mpc

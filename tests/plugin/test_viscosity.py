@@ -86,7 +86,7 @@ def test_wall_slip(
     with Simulation(scene, "mpc", tmp_path / "run") as simulation:
         simulation.finish()
     fluid = RunDirectory(tmp_path / "run").fluid_profile
-    after = fluid.steps * scene.time_step > scene.equilibration
+    after = fluid.steps * scene.system.clock.time_step > scene.equilibration
     momentum, counts = (fluid.counts * fluid.velocity_x)[after], fluid.counts[after]
     blocks = zip(np.array_split(momentum, 20), np.array_split(counts, 20), strict=True)
     curvature, slip = fit_parabola(np.array([m.sum(0) / n.sum(0) for m, n in blocks]), scene.width)

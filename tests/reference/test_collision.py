@@ -119,11 +119,11 @@ def states(draw: st.DrawFn) -> tuple[Bulk, InitialState]:
         seed=draw(st.integers(1, 2**31 - 1)),
     )
     random = np.random.default_rng(draw(st.integers(0, 2**32)))
-    particles = scene.fluid_particles
+    particles = scene.system.solvent.particles
     spread = draw(st.sampled_from([1.0, 0.02]))
     none = np.empty((0, dimension))
     return scene, InitialState(
-        random.random((particles, dimension)) * scene.box * spread,
+        random.random((particles, dimension)) * scene.system.box.sizes * spread,
         random.normal(size=(particles, dimension)) * draw(st.sampled_from([1e-3, 1.0, 30.0]))
         + draw(st.sampled_from([0.0, 5.0])),
         none,
@@ -148,9 +148,11 @@ def test_momentum_and_energy_are_conserved(case: tuple[Bulk, InitialState]) -> N
 @settings(deadline=None)
 def test_collision_conserves_every_cell(case: tuple[Bulk, InitialState]) -> None:
     scene, state = case
-    shape = grid_shape(scene.box, scene.periodic)
+    shape = grid_shape(scene.system.box.sizes, scene.system.box.periodic)
     velocities = state.fluid_velocities.T.copy()
-    cells = Cells.sort(state.fluid_positions.T, np.full(len(shape), 0.3), shape, scene.periodic)
+    cells = Cells.sort(
+        state.fluid_positions.T, np.full(len(shape), 0.3), shape, scene.system.box.periodic
+    )
     before, energy = cells.sum(velocities), cells.sum((velocities**2).sum(axis=0))
     random = CounterRandom(scene.seed, 0)
     collide(velocities, cells, cells.mean_velocity(velocities), scene.angle, scene.rotation, random)

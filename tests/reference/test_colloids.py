@@ -84,7 +84,7 @@ def integrate_everything(scene: Channel, engine: ReferenceEngine) -> tuple[Array
     """tau_c of velocity Verlet with the double loop at each step: positions and velocities."""
     fluid, fluid_v = engine.fluid_positions.copy(), engine.fluid_velocities.copy()
     colloids, colloids_v = engine.colloid_positions.copy(), engine.colloid_velocities.copy()
-    time, gravity = scene.time_step, np.array([scene.gravity, 0])
+    time, gravity = scene.system.clock.time_step, np.array([scene.gravity, 0])
     on_fluid, on_colloids = double_loop(scene, fluid, colloids)
     for _ in range(scene.md_steps_per_collision):
         r, v = fluid.T.copy(), fluid_v.T.copy()
@@ -124,7 +124,7 @@ def test_a_collision_interval_misses_no_force(
 
 def test_colloid_falls_freely_without_fluid_and_walls() -> None:
     scene = Channel.make(gravity=0.3, hydrodynamics="bath", collision_time=0.5)
-    state = initial_state(scene)
+    state = initial_state(scene.system, scene.seed)
     state.fluid_positions[:] = [0.0, 0.1]  # out of reach of the colloids on the mid-line
     state.fluid_velocities[:] = 0
     state.colloid_velocities[:] = [0.2, 0]

@@ -54,11 +54,14 @@ def test_everything_stays_in_the_box(name: str, fields: dict[str, Any]) -> None:
     scene = make_scene(name, **fields)
     engine = ReferenceEngine(scene)
     engine.advance(25)
-    box = np.array(scene.box)
-    assert engine.fluid_positions.shape == (scene.fluid_particles, scene.dimensions)
+    box = np.array(scene.system.box.sizes)
+    assert engine.fluid_positions.shape == (
+        scene.system.solvent.particles,
+        scene.system.box.dimensions,
+    )
     assert (engine.fluid_positions >= 0).all()
     assert (engine.fluid_positions <= box).all()
-    assert (engine.fluid_positions < box)[:, scene.periodic].all()
+    assert (engine.fluid_positions < box)[:, scene.system.box.periodic].all()
 
 
 def test_one_collision_by_hand() -> None:
@@ -103,9 +106,11 @@ def test_mean_velocity_weighs_colloids_with_their_mass() -> None:
     engine.fluid_velocities[:] = [1.0, 0.0]
     engine.colloid_velocities[:] = [0.0, 2.0]
     mass = scene.colloid_mass
-    total = scene.fluid_particles + mass
+    total = scene.system.solvent.particles + mass
     np.testing.assert_allclose(
-        engine.mean_velocity(), [scene.fluid_particles / total, 2 * mass / total], rtol=1e-13
+        engine.mean_velocity(),
+        [scene.system.solvent.particles / total, 2 * mass / total],
+        rtol=1e-13,
     )
 
 

@@ -133,14 +133,16 @@ def measured_viscosity(engine: ReferenceEngine, chaos: bool = False) -> tuple[fl
         scene.density, scene.collision_time, scene.angle, scene.dimension, scene.rotation
     )
     kick = scene.shear_wave * math.expm1(theory * interval)
-    duration = max(1500.0, 4 / (scene.fluid_particles * scene.shear_wave**2 * theory * ERROR**2))
+    duration = max(
+        1500.0, 4 / (scene.system.solvent.particles * scene.shear_wave**2 * theory * ERROR**2)
+    )
 
     def advance() -> None:
         for _ in range(KICK_INTERVAL):
             if chaos:
-                engine.fluid_positions[:, across] = np.array(scene.box)[across] * random.random(
-                    (scene.fluid_particles, len(across))
-                )
+                engine.fluid_positions[:, across] = np.array(scene.system.box.sizes)[
+                    across
+                ] * random.random((scene.system.solvent.particles, len(across)))
             engine.advance(1)
 
     for _ in range(4):

@@ -74,7 +74,7 @@ def test_engines_start_from_the_same_state_and_write_the_same_columns(
     with Simulation(scene, engine, tmp_path) as run:
         run.run(0.15)
     first = frames(tmp_path / "trajectory.lammpsdump")[0]
-    state = initial_state(scene)
+    state = initial_state(scene.system, scene.seed)
     np.testing.assert_allclose(first[:, 2:4], state.colloid_positions, rtol=1e-9)
     np.testing.assert_allclose(first[:, 5:7], state.colloid_velocities, rtol=1e-9)
     assert (tmp_path / "observables.dat").read_text().splitlines()[1] == (
@@ -83,7 +83,11 @@ def test_engines_start_from_the_same_state_and_write_the_same_columns(
     profile = (tmp_path / "fluid_profile.dat").read_text().splitlines()
     assert profile[2] == "# Chunk Coord1 Ncount density/number vx temp"
     step, bins, count = profile[3].split()
-    assert (int(step), int(bins), float(count)) == (150, 20, pytest.approx(scene.fluid_particles))
+    assert (int(step), int(bins), float(count)) == (
+        150,
+        20,
+        pytest.approx(scene.system.solvent.particles),
+    )
     rows = np.loadtxt(profile[4:24])
     np.testing.assert_allclose(rows[:, 1], np.arange(20) / 2 + 0.25)
     np.testing.assert_allclose(rows[:, 3], rows[:, 2] / (40 * 0.5), rtol=1e-4)

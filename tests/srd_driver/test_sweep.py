@@ -7,10 +7,10 @@ from typing import Any
 
 import numpy as np
 import pytest
+from srd_driver.run_directory import read_failure, write_failure
 
 from lammps_inputs import Scene, SceneError, make_scene
 from srd_driver import RunError, Simulation, sweep_definition
-from srd_driver.run_directory import read_failure, write_failure
 from srd_driver.status import status_of, stored_run
 from srd_driver.sweep import Advance, Run, command, is_finished, run_all
 from tests.lammps_inputs.test_decks import frames
@@ -143,7 +143,10 @@ def test_runs_are_done_once_and_one_that_fails_stops_no_other(tmp_path: Path) ->
     assert status_of(bad).state == "failed"
     assert [is_finished(run) for run in [bad, *good]] == [False, True, True]
     assert (told[-1].finished, told[-1].failed, told[-1].running, told[-1].runs) == (2, 1, 0, 3)
-    works = [run.scene.fluid_particles * run.scene.collisions for run in (*good, bad)]
+    works = [
+        run.scene.system.solvent.particles * run.scene.system.clock.collisions
+        for run in (*good, bad)
+    ]
     assert sum(works[:2]) / sum(works) <= told[-1].work < 1  # what the failed run wrote counts
     assert sorted(path.name for path in tmp_path.glob("*.log")) == ["bad.log"]
 

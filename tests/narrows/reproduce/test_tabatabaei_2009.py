@@ -42,7 +42,9 @@ def test_runs_can_be_run_and_are_shared(quality, tmp_path):
     assert len(plan.runs) < len(named)
     folders = {run.folder for run in plan.runs}
     assert len(folders) == len(plan.runs) == len(set(named))
-    work = [run.scene.fluid_particles * run.scene.collisions for run in plan.runs]
+    work = [
+        run.scene.system.solvent.particles * run.scene.system.clock.collisions for run in plan.runs
+    ]
     assert work == sorted(work, reverse=True)
 
 
