@@ -21,10 +21,9 @@ from analysis.flow import momentum_profile
 from analysis.run_directory import RunDirectory
 from analysis.shear_wave import wave_amplitude
 from lammps_inputs import make_scene
-from lammps_inputs.deck import Engine
 from srd_driver.sweep import Run, available_cores, run_all
 
-ENGINES: tuple[Engine, ...] = ("mpc", "reference", "srd")
+ENGINES: tuple[str, ...] = ("mpc", "reference", "srd")
 COLORS = ("C2", "C0", "C1")
 SEEDS = tuple(range(1, 11))
 COLLOIDS = (1, 3, 5)  # in 40 x 10
@@ -63,7 +62,7 @@ QUANTITIES: dict[str, list[str]] = {
 }
 
 
-def run_of(folder: Path, name: str, engine: Engine, seed: int) -> Run:
+def run_of(folder: Path, name: str, engine: str, seed: int) -> Run:
     scene = make_scene(name.partition(",")[0], **SCENES[name], seed=seed)
     return Run(
         folder / f"{name.replace(', ', '-').replace(' ', '-')}-{engine}-{seed}", scene, engine

@@ -33,7 +33,6 @@ from srd_driver.run_directory import replace_text
 from analysis.blocking import Estimate
 from analysis.sweep_table import combine
 from lammps_inputs import Scene, make_scene
-from lammps_inputs.deck import Engine
 from lammps_inputs.viscosity import viscosity
 from srd_driver.sweep import Run, available_cores, run_all
 
@@ -52,14 +51,14 @@ Summary = dict[str, Any]
 class Setting:
     """An engine and the fields of a scene that are not those of its study."""
 
-    engine: Engine
+    engine: str
     changes: tuple[tuple[str, Any], ...] = ()
 
     def __str__(self) -> str:
         return " ".join([self.engine, *(f"{name}={value}" for name, value in self.changes)])
 
 
-def setting(engine: Engine, **changes: Any) -> Setting:
+def setting(engine: str, **changes: Any) -> Setting:
     return Setting(engine, tuple(changes.items()))
 
 
@@ -245,7 +244,7 @@ class Result:
         return self.seconds * self.statistical**2 / (error**2 - floor**2)
 
 
-def measure_speeds(scenes: dict[str, tuple[Scene, Engine]], file: Path) -> dict[str, float]:
+def measure_speeds(scenes: dict[str, tuple[Scene, str]], file: Path) -> dict[str, float]:
     """Processor seconds for one time unit of each scene; those in the file are not measured."""
     known: dict[str, float] = json.loads(file.read_text()) if file.exists() else {}
     missing = [name for name in scenes if name not in known]
@@ -258,7 +257,7 @@ def measure_speeds(scenes: dict[str, tuple[Scene, Engine]], file: Path) -> dict[
     return known
 
 
-def _cost(scene: Scene, engine: Engine) -> float:
+def _cost(scene: Scene, engine: str) -> float:
     with endless(scene, engine) as simulation:
         return cost(simulation, PIECE_SECONDS)
 

@@ -20,7 +20,7 @@ from matplotlib.figure import Figure
 from numpy.typing import NDArray
 
 from analysis.two_fluid import TwoFluid
-from lammps_inputs import Channel
+from lammps_inputs.scenes.channel import Channel
 
 Array = NDArray[np.float64]
 

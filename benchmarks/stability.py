@@ -68,7 +68,7 @@ class Axis:
     values: tuple[float, ...]
     fields: Callable[[float], Fields]
     criterion: Criterion
-    engine: Engine = "mpc"
+    engine: str = "mpc"
 
 
 @dataclass

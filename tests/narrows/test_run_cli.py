@@ -12,7 +12,7 @@ import numpy as np
 import pytest
 
 from tests.conftest import COMMANDS, ROOT, Run
-from tests.lammps_inputs.test_decks import frames
+from tests.dumps import frames
 
 SHORT = ["--set", "duration=1.2", "--set", "equilibration=0", "--set", "sampling_interval=0.15"]
 THIN = ["--set", "density=0.5", "--set", "duration=10"]

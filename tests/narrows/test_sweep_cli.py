@@ -14,7 +14,7 @@ import pytest
 from lammps_inputs import make_scene
 from srd_driver import Simulation
 from tests.conftest import ROOT, Run
-from tests.lammps_inputs.test_decks import frames
+from tests.dumps import frames
 
 TINY = ["--set", "length=20", "--set", "colloids=1", "--set", "equilibration=0"]
 SHORT = [*TINY, "--set", "duration=1.2", "--set", "sampling_interval=0.15"]

@@ -6,8 +6,9 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from numpy.typing import NDArray
 
-from lammps_inputs import Bulk, InitialState
-from lammps_inputs.scene import Rotation
+from lammps_inputs import InitialState
+from lammps_inputs.scenes.bulk import Bulk
+from lammps_inputs.system import Rotation
 from srd_driver.reference import ReferenceEngine
 from srd_driver.reference.collision import (
     Cells,

@@ -2,14 +2,15 @@
 
 import numpy as np
 import pytest
-from blocking import mean_and_error
 from numpy.typing import NDArray
 from scipy.stats import kstest
 
-from lammps_inputs import Channel, initial_state
+from lammps_inputs import initial_state
+from lammps_inputs.scenes.channel import Channel
 from srd_driver.reference import ReferenceEngine, SimulationFault
 from srd_driver.reference.colloids import ColloidForces
 from srd_driver.reference.streaming import stream
+from tests.reference.blocking import mean_and_error
 
 Array = NDArray[np.float64]
 

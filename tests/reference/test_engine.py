@@ -6,7 +6,8 @@ from typing import Any
 import numpy as np
 import pytest
 
-from lammps_inputs import Bulk, InitialState, Scene, make_scene
+from lammps_inputs import InitialState, Scene, make_scene
+from lammps_inputs.scenes.bulk import Bulk
 from srd_driver.reference import ReferenceEngine
 from srd_driver.reference.counter_random import CounterRandom, Stream
 

@@ -5,11 +5,11 @@ python -m pytest -m statistics -s tests/reference/test_settling_speed.py
 
 import numpy as np
 import pytest
-from blocking import mean_and_error
 from numpy.typing import NDArray
 
-from lammps_inputs import Channel
+from lammps_inputs.scenes.channel import Channel
 from srd_driver.reference import ReferenceEngine
+from tests.reference.blocking import mean_and_error
 
 EQUILIBRATION = 100.0
 DURATION = 3000.0

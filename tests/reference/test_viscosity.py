@@ -14,8 +14,8 @@ from itertools import product
 import numpy as np
 import pytest
 
-from lammps_inputs import Bulk
-from lammps_inputs.scene import Rotation
+from lammps_inputs.scenes.bulk import Bulk
+from lammps_inputs.system import Rotation
 from lammps_inputs.viscosity import viscosity
 from srd_driver.reference import ReferenceEngine
 

@@ -1,15 +1,17 @@
 """Erratum of 4.5: the released chain spreads at the tail, not at the head."""
 
+from pathlib import Path
+
 import numpy as np
 import pytest
 
 from analysis import RunDirectory, chain
-from lammps_inputs import Channel
+from lammps_inputs.scenes.channel import Channel
 from srd_driver import Simulation
 
 
 @pytest.mark.statistics
-def test_the_tail_spreads_and_the_head_closes_up(tmp_path):
+def test_the_tail_spreads_and_the_head_closes_up(tmp_path: Path) -> None:
     growth = []
     for seed in range(1, 5):
         scene = Channel.make(
