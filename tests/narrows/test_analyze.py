@@ -39,14 +39,14 @@ def test_bad_directory_is_one_line_on_stderr(tmp_path: Path) -> None:
     done = narrows(tmp_path / "nowhere")
     assert done.exit_code == 2
     assert done.stdout == ""
-    assert done.stderr == f"narrows analyze: {tmp_path / 'nowhere'}: no such directory\n"
+    assert done.stderr == f"narrows: {tmp_path / 'nowhere'}: no such directory\n"
 
 
 def test_results_that_cannot_be_written(run: Path) -> None:
     (run / "summary.json").mkdir()
     done = narrows(run)
-    assert done.exit_code == 2
-    assert done.stderr.startswith("narrows analyze: ")
+    assert done.exit_code == 1
+    assert done.stderr.startswith("narrows: ")
     assert done.stderr.count("\n") == 1
     assert "summary.json" in done.stderr
 

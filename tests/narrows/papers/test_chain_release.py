@@ -25,9 +25,8 @@ def test_the_tail_spreads_and_the_head_closes_up(tmp_path: Path) -> None:
         )
         with Simulation(scene, "mpc", tmp_path / str(seed)) as simulation:
             simulation.finish()
-        colloids = RunDirectory(tmp_path / str(seed)).colloids
-        order = chain.head_order(colloids.positions[0, :, 0], scene.gravity)
-        spacings = chain.neighbour_spacings(colloids.positions[:, order, 0])
+        colloids = chain.chain_of(RunDirectory(tmp_path / str(seed)))
+        spacings = chain.neighbour_spacings(colloids.x)
         groups = chain.group_spacings(spacings)
         growth.append(groups[-1] - groups[0])
     each = np.array(growth)

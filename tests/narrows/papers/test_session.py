@@ -18,7 +18,7 @@ import pytest
 from narrows.papers import session
 from narrows.papers.figure import Directories, PaperFigure, Quality
 from narrows.papers.session import Plan, carry_out
-from srd_driver.sweep import Advance, Failure, Run
+from srd_driver.sweep import Advance, Failure, Run, run_all
 from tests.conftest import ROOT
 from tests.narrows.papers.tiny import paper
 
@@ -52,7 +52,8 @@ def test_figures_data_results_and_page(tmp_path: Path) -> None:
     assert not re.search(r"https?://|@import|url\(|<script", page)
     assert "A &lt;tiny&gt; paper" in page
     assert "2 agree" in page
-    assert "3 with fix mpc" in page
+    assert "3 by the engine mpc" in page
+    assert "those of a &lt;tiny&gt; world" in page
 
 
 def test_finished_runs_are_skipped(tmp_path: Path) -> None:
@@ -69,7 +70,6 @@ def test_a_failed_run_costs_its_own_figures_only(
 ) -> None:
     plan = plan_of(tmp_path)
     lost = next(run for run in plan.runs if run.scene.seed == 3)  # of the second figure
-    run_all = session.run_all
 
     def one_fails(
         runs: Sequence[Run], jobs: int, report: Callable[[Advance], None] | None = None
@@ -86,7 +86,7 @@ def test_a_failed_run_costs_its_own_figures_only(
 
 
 def test_a_figure_that_cannot_be_made_costs_itself_only(tmp_path: Path) -> None:
-    def make(folders: Directories, quality: Quality) -> Never:
+    def make(directories: Directories, quality: Quality) -> Never:
         raise ValueError("every point needs a positive error")
 
     plan = plan_of(tmp_path)

@@ -13,7 +13,7 @@ from narrows.papers.figure import Quality
 from narrows.papers.session import Plan, run_of, select
 from narrows.papers.tabatabaei_2009 import PAPER
 from narrows.papers.tabatabaei_2009.few_colloids import crowds
-from narrows.papers.tabatabaei_2009.lattice_shocks import SHOCKS, Shock
+from narrows.papers.tabatabaei_2009.lattice_shocks import SHOCKS, RunningShock
 from narrows.papers.tabatabaei_2009.state_points import (
     Speed,
     difference,
@@ -44,9 +44,7 @@ def test_runs_can_be_run_and_are_shared(quality: Quality, tmp_path: Path) -> Non
     assert len(plan.runs) < len(named)
     folders = {run.folder for run in plan.runs}
     assert len(folders) == len(plan.runs) == len(set(named))
-    work = [
-        run.scene.system.solvent.particles * run.scene.system.clock.collisions for run in plan.runs
-    ]
+    work = [run.scene.system.work for run in plan.runs]
     assert work == sorted(work, reverse=True)
 
 
@@ -74,7 +72,7 @@ def test_qualities_do_not_share_folders(tmp_path: Path) -> None:
         for quality in ("quick", "full")
     )
     scenes = [scene for figure in PAPER.figures for scene in figure.scenes("quick")]
-    same = {run_of(s, tmp_path).folder for s in scenes} & full
+    same = {run_of(s, PAPER.engine, tmp_path).folder for s in scenes} & full
     assert quick & full == same  # only runs that are the same to the last field
 
 
@@ -101,7 +99,7 @@ def test_difference_and_fit_carry_errors() -> None:
 
 
 @pytest.mark.parametrize("shock", SHOCKS, ids=lambda shock: shock.number)
-def test_shocks_random_walk_at_the_rates_of_the_thesis(shock: Shock) -> None:
+def test_shocks_random_walk_at_the_rates_of_the_thesis(shock: RunningShock) -> None:
     model = shock.model()
     gas = model.gas()
     assert np.max(random_walk_residuals(gas, 4, model.z1, model.z2)) < 1e-10

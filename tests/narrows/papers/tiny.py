@@ -3,8 +3,8 @@
 import sys
 from pathlib import Path
 
-from analysis import RunDirectory
 from analysis.blocking import Estimate
+from lammps_inputs.engines import DEFAULT
 from lammps_inputs.scenes.channel import Channel
 from narrows.papers.drawing import one_panel
 from narrows.papers.figure import Directories, Outcome, Paper, PaperFigure, Quality
@@ -21,9 +21,9 @@ def scene(seed: int, duration: float = 3.0) -> Channel:
 def place(number: str, seeds: tuple[int, ...], duration: float) -> PaperFigure:
     """A figure of the last place of the colloid in runs of these seeds."""
 
-    def make(folders: Directories, quality: Quality) -> Outcome:
+    def make(directories: Directories, quality: Quality) -> Outcome:
         last = [
-            RunDirectory(folders[scene(seed, duration)]).colloids.positions[-1, 0, 0]
+            float(directories[scene(seed, duration)].particles().positions[-1, 0, 0])
             for seed in seeds
         ]
         figure, axes = one_panel("seed", "place")
@@ -38,7 +38,7 @@ def place(number: str, seeds: tuple[int, ...], duration: float) -> PaperFigure:
 
 def paper(duration: float = 3.0) -> Paper:
     figures = (place("1", (1, 2), duration), place("2", (2, 3), duration))
-    return Paper("tiny", "A <tiny> paper", figures)
+    return Paper("tiny", "A <tiny> paper", figures, engine=DEFAULT, units="those of a <tiny> world")
 
 
 if __name__ == "__main__":
