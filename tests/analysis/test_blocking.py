@@ -6,6 +6,7 @@ from numpy.typing import NDArray
 from scipy.signal import lfilter
 
 from analysis.blocking import Estimate, blocking_curve, mean, mean_of_independent
+from tests.analysis.known import known
 
 Array = NDArray[np.float64]
 
@@ -36,7 +37,7 @@ def test_curve_of_a_square_wave_by_hand() -> None:
 def test_error_of_ar1_is_the_closed_form(phi: float) -> None:
     random = np.random.default_rng(1)
     samples, repeats = 4096, 60
-    squares = [mean(autoregressive(phi, samples, random)).error ** 2 for _ in range(repeats)]
+    squares = [known(mean(autoregressive(phi, samples, random)))[1] ** 2 for _ in range(repeats)]
     # variance of a variance from m blocks is 2/(m - 1): m >= 12 here, so the mean over 60 repeats
     # scatters by 5.5 %; the bias of blocks of finite length adds at most 10 %
     assert math.sqrt(np.mean(squares)) == pytest.approx(exact_error(phi, samples), rel=0.15)
@@ -49,9 +50,8 @@ def test_naive_error_of_ar1_would_be_wrong() -> None:
 
 def test_pulls_are_standard_normal() -> None:
     random = np.random.default_rng(2)
-    pulls = np.array(
-        [e.value / e.error for e in (mean(autoregressive(0.5, 4096, random)) for _ in range(200))]
-    )
+    found = [known(mean(autoregressive(0.5, 4096, random))) for _ in range(200)]
+    pulls = np.array([value / error for value, error in found])
     assert abs(pulls.mean()) < PULL_BOUND / math.sqrt(200)
     # errors from 22 blocks or more: Student's t has a standard deviation of 1.05 at most
     assert abs(pulls.std() - 1.03) < PULL_BOUND / math.sqrt(2 * 200)
@@ -93,7 +93,9 @@ def test_no_samples() -> None:
 
 
 def test_constant_has_no_error() -> None:
-    assert mean([0.1] * 100) == Estimate(pytest.approx(0.1), 0.0)
+    value, error = known(mean([0.1] * 100))
+    assert value == pytest.approx(0.1)
+    assert error == 0.0
 
 
 def test_curve_refuses_a_single_sample() -> None:

@@ -8,7 +8,7 @@ from analysis.front import coarse_density, fit_front, places
 
 
 def test_even_chain_has_an_even_density_in_bins_of_any_size() -> None:
-    chain = 2.5 + 5.0 * np.arange(300)
+    chain = 2.5 + 5.0 * np.arange(300.0)
     for size in (3.0, 10.0, 20.0):
         inside = coarse_density(chain, np.arange(100, 1400, size), width=10)
         assert inside == pytest.approx(0.02)
@@ -28,7 +28,9 @@ def test_places_are_the_inverse() -> None:
     edges = np.arange(-40.0, 440.1, 0.25)
     middles = (x[1:] + x[:-1]) / 2  # ends of the shares
     density = coarse_density(x, edges, width=10)
-    assert places(density, edges, 10, np.arange(1.0, 50.0)) == pytest.approx(middles, abs=0.26)
+    assert places(density, edges, 10, [float(n) for n in range(1, 50)]) == pytest.approx(
+        middles, abs=0.26
+    )
 
 
 @pytest.mark.parametrize("side", [1, -1])
@@ -43,7 +45,7 @@ def test_fit_finds_a_front_under_noise(side: int) -> None:
 
 
 def test_a_sharp_end_is_no_wider_than_a_bin() -> None:
-    chain = 2.5 + 5.0 * np.arange(300)
+    chain = 2.5 + 5.0 * np.arange(300.0)
     edges = np.arange(1300, 1600.1, 10)
     front = fit_front((edges[1:] + edges[:-1]) / 2, coarse_density(chain, edges, 10), side=-1)
     assert front.position == pytest.approx(1500, abs=5)

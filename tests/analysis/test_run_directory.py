@@ -10,7 +10,7 @@ import MDAnalysis
 import numpy as np
 import pytest
 
-from analysis.run_directory import RunDirectory, RunDirectoryError
+from analysis import RunDirectory, RunDirectoryError
 from tests.analysis import run_writer
 from tests.analysis.run_writer import write_channel, write_manifest
 

@@ -6,6 +6,7 @@ from scipy.integrate import quad
 from scipy.signal import lfilter
 
 from analysis.shear_wave import decay_viscosity, wave_amplitude
+from tests.analysis.known import known
 from tests.analysis.run_writer import half_cells
 
 WIDTH, VISCOSITY = 32.0, 0.755
@@ -43,9 +44,9 @@ def test_pulls_are_standard_normal(samples: int) -> None:
         noise = random.normal(size=intervals * samples) * math.sqrt(variance * (1 - factor**2))
         noise[0] += factor * (1.0 + math.sqrt(variance) * random.normal())
         amplitude = lfilter([1], [1, -factor], noise).reshape(intervals, samples).mean(axis=1)
-        found = decay_viscosity(amplitude, 1.0, samples, WIDTH)
-        pulls.append((found.value - VISCOSITY) / found.error)
-        errors.append(found.error / VISCOSITY)
+        value, error = known(decay_viscosity(amplitude, 1.0, samples, WIDTH))
+        pulls.append((value - VISCOSITY) / error)
+        errors.append(error / VISCOSITY)
     assert np.median(errors) < 0.03
     # false-alarm rate 1e-5 each
     assert abs(np.mean(pulls)) < 4.4 / math.sqrt(repeats)
@@ -58,10 +59,10 @@ def test_averaging_must_not_be_taken_for_sampling() -> None:
     factor = math.exp(-RATE)
     noise = random.normal(size=200_000)
     amplitude = lfilter([1], [1, -factor], noise).reshape(-1, 20).mean(axis=1)
-    right = decay_viscosity(amplitude, 20.0, 20, WIDTH)
-    wrong = decay_viscosity(amplitude, 20.0, 1, WIDTH)
-    assert abs(right.value - VISCOSITY) < 4.4 * right.error
-    assert abs(wrong.value - VISCOSITY) > 10 * wrong.error
+    right, error = known(decay_viscosity(amplitude, 20.0, 20, WIDTH))
+    assert abs(right - VISCOSITY) < 4.4 * error
+    wrong, error = known(decay_viscosity(amplitude, 20.0, 1, WIDTH))
+    assert abs(wrong - VISCOSITY) > 10 * error
 
 
 def test_too_few_intervals() -> None:

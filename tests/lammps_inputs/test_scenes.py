@@ -201,7 +201,7 @@ def test_initial_fluid_fills_the_free_space_evenly() -> None:
     scene = make_scene("channel", density=100)
     state = initial_state(scene.system, scene.seed)
     x = state.fluid_positions
-    counts = np.histogram2d(*x.T, bins=(80, 20), range=((0, 40), (0, 10)))[0]
+    counts = np.histogram2d(x[:, 0], x[:, 1], bins=(80, 20), range=((0, 40), (0, 10)))[0]
     centres = np.stack(np.meshgrid(np.arange(80) / 2 + 0.25, np.arange(20) / 2 + 0.25), axis=-1)
     apart = np.array([np.hypot(*(centres - c).T) for c in state.colloid_positions])
     free = counts[(apart > 2 + 0.36).all(axis=0)]

@@ -18,13 +18,14 @@ def tasep_norm(sites: int, alpha: Fraction, beta: Fraction) -> Fraction:
     if sites == 0:
         return Fraction(1)
     a, b = 1 / alpha, 1 / beta
-    return sum(
+    terms = (
         Fraction(k, sites)
         * comb(2 * sites - k - 1, sites - 1)
         * (b ** (k + 1) - a ** (k + 1))
         / (b - a)
         for k in range(1, sites + 1)
     )
+    return sum(terms, Fraction(0))
 
 
 @pytest.mark.parametrize("sites", [1, 10, 100, 1000])

@@ -63,7 +63,8 @@ def checked(path: Path, *extra: object) -> Data:
     out = path.with_name("out.json")
     result = run("check", path, "--sites", 5, "--json", out, *extra)
     assert result.exit_code == 0, result.output
-    return json.loads(out.read_text())
+    data: Data = json.loads(out.read_text())
+    return data
 
 
 @pytest.mark.parametrize("path", EXAMPLES, ids=lambda p: p.stem)
@@ -194,9 +195,12 @@ def test_stationary_without_a_walk(tmp_path: Path) -> None:
     )
     model = charge_gas(bulk).with_reservoirs(0.6, 1.4)
     ends = {}
-    for side, names in (("left", ("alpha", "gamma")), ("right", ("delta", "beta"))):
+    for side, names, rates in (
+        ("left", ("alpha", "gamma"), model.boundary_rates("left")),
+        ("right", ("delta", "beta"), model.boundary_rates("right")),
+    ):
         labels = [f"{name}{i}" for name in names for i in (1, 2, 3)]
-        ends[side] = dict(zip(labels, model.boundary_rates(side), strict=True))
+        ends[side] = dict(zip(labels, rates, strict=True))
     data = checked(
         write(
             tmp_path / "m.toml", {"family": "charge", "z1": 0.6, "z2": 1.4, "rates": bulk, **ends}

@@ -10,7 +10,7 @@ import pytest
 from numpy.typing import NDArray
 
 from lattice import generator, shocks
-from lattice.models import BULK_NAMES, CONSERVED, internal_state_gas, pair_label
+from lattice.models import BULK_NAMES, CONSERVED, Family, internal_state_gas, pair_label
 from tests.lattice.lattice_paper import (
     SIZES,
     Case,
@@ -34,6 +34,10 @@ Array = NDArray[np.float64]
 
 CASES = {"stationary": stationary_internal(2), "other": stationary_internal(5)}
 WALKER = shock_internal()
+P_Q = (
+    WALKER.h["h3"] + WALKER.ratio * WALKER.h["r4"],
+    WALKER.h["h1"] + WALKER.ratio * WALKER.h["r2"],
+)
 WRONG = 1e-3  # a printed form that fails misses by more than this fraction of the largest rate
 
 
@@ -43,7 +47,7 @@ def case(request: pytest.FixtureRequest) -> Case:
 
 
 @pytest.mark.parametrize("family", ["charge", "internal-state"])
-def test_2_4_2_79_rates_are_those_the_conservation_law_allows(family: str) -> None:
+def test_2_4_2_79_rates_are_those_the_conservation_law_allows(family: Family) -> None:
     c = CONSERVED[family]
     total = [c[a] + c[b] for a in range(3) for b in range(3)]
     allowed = {
@@ -248,8 +252,8 @@ def test_2_96_as_printed_fails(case: Case) -> None:
 
 @pytest.mark.parametrize("sites", SIZES)
 def test_2_62_2_97_shock_random_walks(sites: int) -> None:
-    d1 = WALKER.p_q[1] * WALKER.nu2 / WALKER.nu1
-    d2 = WALKER.p_q[0] * WALKER.nu1 / WALKER.nu2
+    d1 = P_Q[1] * WALKER.nu2 / WALKER.nu1
+    d2 = P_Q[0] * WALKER.nu1 / WALKER.nu2
     for k in range(1, sites):
         change = full_flow(WALKER, sites, shock(WALKER, sites, k))
         walk = (
@@ -261,15 +265,9 @@ def test_2_62_2_97_shock_random_walks(sites: int) -> None:
         assert size_of(change) > WRONG * WALKER.gas.scale
 
 
-WALKER.p_q = (
-    WALKER.h["h3"] + WALKER.ratio * WALKER.h["r4"],
-    WALKER.h["h1"] + WALKER.ratio * WALKER.h["r2"],
-)
-
-
 @pytest.mark.parametrize("sites", SIZES)
 def test_2_98_to_2_101_ends_of_the_shock(sites: int) -> None:
-    case, (p, q) = WALKER, WALKER.p_q
+    case, (p, q) = WALKER, P_Q
     c, (e, ep) = case.ratio, drive(WALKER.h, WALKER.ratio)
     field = e * number(case, "A") + ep * number(case, "B")
     g = [(e + c * ep) * z / nu for z, nu in ((case.z1, case.nu1), (case.z2, case.nu2))]
@@ -353,7 +351,7 @@ def test_2_102_to_2_107_are_the_bond_equations_off_the_manifold_too(case: Case) 
 
 def test_2_109_to_2_116_manifold_rates_velocity_and_diffusion() -> None:
     case, h, c = WALKER, WALKER.h, WALKER.ratio
-    p, q = case.p_q
+    p, q = P_Q
     d1, d2 = shocks.hopping_rates(case.gas, case.z1, case.z2)
     assert h["h6"] + h["r4"] == pytest.approx(p, abs=case.bound)  # (2.109)
     assert h["h2"] + h["r2"] == pytest.approx(q, abs=case.bound)  # (2.110)
@@ -410,7 +408,7 @@ def test_2_117_stationary_mixture_is_d2_over_d1(sites: int) -> None:
 def plain_ends() -> Case:
     """Internal-state shock model whose ends have alpha2 = c alpha1, e0 = d2 and eL = d1."""
     h, c, z1, z2 = WALKER.h, WALKER.ratio, WALKER.z1, WALKER.z2
-    (p, q), nu1, nu2 = WALKER.p_q, WALKER.nu1, WALKER.nu2
+    (p, q), nu1, nu2 = P_Q, WALKER.nu1, WALKER.nu2
     d1, d2 = q * nu2 / nu1, p * nu1 / nu2
     # e0 = nu1 (gamma1 + c gamma2)/(1+c) + (p-q)/nu2 = d2 and its mirror image give the sums below
     gamma = (d2 - (p - q) / nu2) * (1 + c) / nu1
@@ -452,7 +450,7 @@ def test_closure_at_the_ends_needs_alpha2_and_delta2(sites: int) -> None:
 
 
 def test_end_rates_of_the_errata() -> None:
-    case, (p, q), c = WALKER, WALKER.p_q, WALKER.ratio
+    case, (p, q), c = WALKER, P_Q, WALKER.ratio
     e0, el = shocks.end_rates(case.gas, case.z1, case.z2)
     assert e0 == pytest.approx(
         case.nu1 * (case.gamma1 + c * case.gamma2) / (1 + c) + (p - q) / case.nu2, rel=1e-12
@@ -634,7 +632,7 @@ def test_2_126_2_127_stationary_current(case: Case, sites: int) -> None:
 
 
 def test_2_128_current_on_the_shock_manifold() -> None:
-    p, q = WALKER.p_q
+    p, q = P_Q
     for z in (WALKER.z1, WALKER.z2, 2.7):
         rho = WALKER.gas.density(z)
         assert WALKER.gas.current(z) == pytest.approx((p - q) * rho * (1 - rho), abs=WALKER.bound)
