@@ -19,6 +19,7 @@ from tests.analysis.run_writer import (
     write_observables,
     write_profile,
 )
+from tests.conftest import ROOT
 
 PNG = b"\x89PNG"
 
@@ -335,3 +336,31 @@ def test_a_measure_names_the_part_that_it_misses(tmp_path: Path) -> None:
         with pytest.raises(RunDirectoryError) as error:
             analyze(tmp_path)
         assert str(error.value) == f"{tmp_path}: {complaint}"
+
+
+def test_a_run_of_narrows_0_1_is_analysed_alike(tmp_path: Path) -> None:
+    channel(tmp_path)
+    summary = analyzed(tmp_path)
+    old = json.loads((ROOT / "tests" / "run_files" / "manifests_of_0_1.json").read_text())[0]
+    old |= {"engine": "srd", "colloids": 7, "colloid_mass": 100.0, "fluid_particles": 4000}
+    old |= {"time_step": 0.1, "steps_per_collision": 1, "sample_steps": 10, "fluid_looks": 1}
+    old |= {"equilibration_steps": 50, "total_steps": 6000, "viscosity_theory": 0.75}
+    (tmp_path / "manifest.json").write_text(json.dumps(old))
+    assert analyzed(tmp_path) == summary
+
+
+def test_particles_without_a_fluid(tmp_path: Path) -> None:
+    random = np.random.default_rng(4)
+    temperature = 1 + 0.01 * random.normal(size=200)
+    temperature[:5] = 9.0  # in the equilibration
+    columns = {"temperature": temperature, "potential_energy": 3 + 0 * temperature}
+    table = run_writer.AVERAGES | {"columns": list(columns)}
+    system = run_writer.channel(3) | {"solvent": None, "drives": [], "outputs": [table]}
+    write_manifest(tmp_path, "gas", system | {"measures": ["particle_averages"]})
+    rows = [f"{10 * n} {t:.10g} 3" for n, t in enumerate(temperature, start=1)]
+    title = "# TimeStep v_temperature v_potential_energy"
+    (tmp_path / "observables.dat").write_text("\n".join([title, *rows, ""]))
+    summary = analyzed(tmp_path)
+    assert close(summary["temperature"], 1.0)
+    assert summary["potential_energy"] == {"value": 3.0, "error": 0.0}
+    assert (summary["fluid_particles"], summary["colloids"], summary["figures"]) == (0, 3, [])
