@@ -5,6 +5,8 @@ from pathlib import Path
 
 from run_files.reading import refuse
 
+FRAME = b"ITEM: TIMESTEP"
+
 
 def cut_output(path: Path, kind: str, step: int) -> None:
     """Drop what the file of an output says of the time after a step; a missing one is left.
@@ -32,8 +34,10 @@ def _lines(path: Path) -> Iterator[tuple[int, bytes]]:
 def _first_frame(path: Path, step: int) -> int:
     frame: int | None = None
     for offset, line in _lines(path):
-        if line.startswith(b"ITEM: TIMESTEP"):
+        if line.startswith(FRAME):
             frame = offset
+        elif FRAME.startswith(line):  # a kill amid the line
+            return offset
         elif frame is not None:
             if not line.endswith(b"\n") or _number(line, path) >= step:
                 return frame

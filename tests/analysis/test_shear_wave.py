@@ -6,13 +6,14 @@ from scipy.integrate import quad
 from scipy.signal import lfilter
 
 from analysis.shear_wave import decay_viscosity, wave_amplitude
+from tests.analysis.known import known
 from tests.analysis.run_writer import half_cells
 
 WIDTH, VISCOSITY = 32.0, 0.755
 RATE = VISCOSITY * (2 * math.pi / WIDTH) ** 2
 
 
-def test_amplitude_is_exact_for_bin_averages():
+def test_amplitude_is_exact_for_bin_averages() -> None:
     y = half_cells(WIDTH)
     wave = [
         quad(lambda s: 0.3 * math.sin(2 * math.pi * s / WIDTH), c - 0.25, c + 0.25)[0] / 0.5
@@ -23,7 +24,7 @@ def test_amplitude_is_exact_for_bin_averages():
 
 
 @pytest.mark.parametrize("samples", [1, 10])
-def test_decay_without_noise(samples):
+def test_decay_without_noise(samples: int) -> None:
     # one interval averages `samples` points: a constant factor, the rate stays
     amplitude = 0.1 * np.exp(-RATE * np.arange(1, 200 * samples + 1) / samples)
     means = amplitude.reshape(200, samples).mean(axis=1)
@@ -33,7 +34,7 @@ def test_decay_without_noise(samples):
 
 
 @pytest.mark.parametrize("samples", [1, 10])
-def test_pulls_are_standard_normal(samples):
+def test_pulls_are_standard_normal(samples: int) -> None:
     """A wave of amplitude 1 on the thermal noise of 32 x 32 cells of 10 particles."""
     random = np.random.default_rng(5)
     variance, intervals, repeats = 2 / (10 * WIDTH**2), 200, 150
@@ -43,34 +44,34 @@ def test_pulls_are_standard_normal(samples):
         noise = random.normal(size=intervals * samples) * math.sqrt(variance * (1 - factor**2))
         noise[0] += factor * (1.0 + math.sqrt(variance) * random.normal())
         amplitude = lfilter([1], [1, -factor], noise).reshape(intervals, samples).mean(axis=1)
-        found = decay_viscosity(amplitude, 1.0, samples, WIDTH)
-        pulls.append((found.value - VISCOSITY) / found.error)
-        errors.append(found.error / VISCOSITY)
+        value, error = known(decay_viscosity(amplitude, 1.0, samples, WIDTH))
+        pulls.append((value - VISCOSITY) / error)
+        errors.append(error / VISCOSITY)
     assert np.median(errors) < 0.03
     # false-alarm rate 1e-5 each
     assert abs(np.mean(pulls)) < 4.4 / math.sqrt(repeats)
     assert abs(np.std(pulls) - 1) < 4.4 / math.sqrt(2 * repeats)
 
 
-def test_averaging_must_not_be_taken_for_sampling():
+def test_averaging_must_not_be_taken_for_sampling() -> None:
     """Means over intervals treated as single samples would be biased far beyond the error."""
     random = np.random.default_rng(6)
     factor = math.exp(-RATE)
     noise = random.normal(size=200_000)
     amplitude = lfilter([1], [1, -factor], noise).reshape(-1, 20).mean(axis=1)
-    right = decay_viscosity(amplitude, 20.0, 20, WIDTH)
-    wrong = decay_viscosity(amplitude, 20.0, 1, WIDTH)
-    assert abs(right.value - VISCOSITY) < 4.4 * right.error
-    assert abs(wrong.value - VISCOSITY) > 10 * wrong.error
+    right, error = known(decay_viscosity(amplitude, 20.0, 20, WIDTH))
+    assert abs(right - VISCOSITY) < 4.4 * error
+    wrong, error = known(decay_viscosity(amplitude, 20.0, 1, WIDTH))
+    assert abs(wrong - VISCOSITY) > 10 * error
 
 
-def test_too_few_intervals():
+def test_too_few_intervals() -> None:
     found = decay_viscosity(np.ones(9), 1.0, 1, WIDTH)
     assert found.value is None
     assert found.reason == "9 intervals are too few; 10 are needed"
 
 
-def test_growth_is_no_decay():
+def test_growth_is_no_decay() -> None:
     found = decay_viscosity(np.exp(0.1 * np.arange(100.0)), 1.0, 1, WIDTH)
     assert found.value is None
     assert found.reason == "the decay is not resolved by the sampled times"

@@ -59,7 +59,7 @@ def test_the_wall_is_the_numpy_definition(lammps: Commands) -> None:
     places = np.array([0.9, 1.2, 1.5, 1.79, 1.81, 4.0, 6.3, 6.9])
     atoms = "\n".join(f"create_atoms 1 single {i + 1} {y} 0" for i, y in enumerate(places))
     instance = lammps(
-        f"{slit(atoms)}\n{wall.wall_fix('wall', 'all')}\n"
+        f"{slit(atoms)}\n{wall.wall_fix('wall', 'all', ['ylo', 'yhi'])}\n"
         "fix_modify wall energy yes\nthermo_modify norm no"
     )
     instance.command("run 0")

@@ -3,27 +3,27 @@
 import sys
 from pathlib import Path
 
-from analysis import RunDirectory
 from analysis.blocking import Estimate
-from lammps_inputs import Channel
+from lammps_inputs.engines import DEFAULT
+from lammps_inputs.scenes.channel import Channel
 from narrows.papers.drawing import one_panel
-from narrows.papers.figure import Outcome, Paper, PaperFigure
+from narrows.papers.figure import Directories, Outcome, Paper, PaperFigure, Quality
 from narrows.papers.results import PaperNumber, compared
 from narrows.papers.session import Plan, carry_out
 
 
-def scene(seed, duration=3.0):
+def scene(seed: int, duration: float = 3.0) -> Channel:
     return Channel.make(
         length=20, colloids=1, duration=duration, equilibration=0, sampling_interval=0.3, seed=seed
     )
 
 
-def place(number, seeds, duration):
+def place(number: str, seeds: tuple[int, ...], duration: float) -> PaperFigure:
     """A figure of the last place of the colloid in runs of these seeds."""
 
-    def make(folders, quality):
+    def make(directories: Directories, quality: Quality) -> Outcome:
         last = [
-            RunDirectory(folders[scene(seed, duration)]).colloids.positions[-1, 0, 0]
+            float(directories[scene(seed, duration)].particles().positions[-1, 0, 0])
             for seed in seeds
         ]
         figure, axes = one_panel("seed", "place")
@@ -36,9 +36,9 @@ def place(number, seeds, duration):
     )
 
 
-def paper(duration=3.0):
+def paper(duration: float = 3.0) -> Paper:
     figures = (place("1", (1, 2), duration), place("2", (2, 3), duration))
-    return Paper("tiny", "A <tiny> paper", figures)
+    return Paper("tiny", "A <tiny> paper", figures, engine=DEFAULT, units="those of a <tiny> world")
 
 
 if __name__ == "__main__":

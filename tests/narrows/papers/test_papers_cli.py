@@ -1,3 +1,5 @@
+from pathlib import Path
+
 import pytest
 from typer.testing import CliRunner
 
@@ -11,7 +13,7 @@ from narrows.cli import app
         (["tabatabaei-2009", "4.2"], "figure '4.2': tabatabaei-2009 has 2.1, 2.2, 3.6"),
     ],
 )
-def test_what_is_not_there(words, message, tmp_path):
+def test_what_is_not_there(words: list[str], message: str, tmp_path: Path) -> None:
     command = ["reproduce", *words, "--out", str(tmp_path / "out")]
     done = CliRunner().invoke(app, command, env={"COLUMNS": "200", "TERM": "dumb"})
     assert done.exit_code == 2
@@ -19,7 +21,7 @@ def test_what_is_not_there(words, message, tmp_path):
     assert not (tmp_path / "out").exists()
 
 
-def test_a_figure_of_the_lattice_gas(tmp_path):
+def test_a_figure_of_the_lattice_gas(tmp_path: Path) -> None:
     out = tmp_path / "out"
     command = ["reproduce", "tabatabaei-2009", "2.2", "--quick", "--out", str(out)]
     done = CliRunner().invoke(app, command)

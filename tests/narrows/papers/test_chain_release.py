@@ -1,15 +1,17 @@
 """Erratum of 4.5: the released chain spreads at the tail, not at the head."""
 
+from pathlib import Path
+
 import numpy as np
 import pytest
 
 from analysis import RunDirectory, chain
-from lammps_inputs import Channel
+from lammps_inputs.scenes.channel import Channel
 from srd_driver import Simulation
 
 
 @pytest.mark.statistics
-def test_the_tail_spreads_and_the_head_closes_up(tmp_path):
+def test_the_tail_spreads_and_the_head_closes_up(tmp_path: Path) -> None:
     growth = []
     for seed in range(1, 5):
         scene = Channel.make(
@@ -23,9 +25,8 @@ def test_the_tail_spreads_and_the_head_closes_up(tmp_path):
         )
         with Simulation(scene, "mpc", tmp_path / str(seed)) as simulation:
             simulation.finish()
-        colloids = RunDirectory(tmp_path / str(seed)).colloids
-        order = chain.head_order(colloids.positions[0, :, 0], scene.gravity)
-        spacings = chain.neighbour_spacings(colloids.positions[:, order, 0])
+        colloids = chain.chain_of(RunDirectory(tmp_path / str(seed)))
+        spacings = chain.neighbour_spacings(colloids.x)
         groups = chain.group_spacings(spacings)
         growth.append(groups[-1] - groups[0])
     each = np.array(growth)

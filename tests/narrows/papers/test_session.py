@@ -8,23 +8,27 @@ import signal
 import subprocess
 import sys
 import time
+from collections.abc import Callable, Sequence
+from pathlib import Path
+from typing import Never
 
 import numpy as np
+import pytest
 
 from narrows.papers import session
-from narrows.papers.figure import PaperFigure
+from narrows.papers.figure import Directories, PaperFigure, Quality
 from narrows.papers.session import Plan, carry_out
-from srd_driver.sweep import Failure
+from srd_driver.sweep import Advance, Failure, Run, run_all
 from tests.conftest import ROOT
 from tests.narrows.papers.tiny import paper
 
 
-def plan_of(out, duration=3.0):
+def plan_of(out: Path, duration: float = 3.0) -> Plan:
     whole = paper(duration)
     return Plan(whole, whole.figures, "quick", out)
 
 
-def test_figures_data_results_and_page(tmp_path):
+def test_figures_data_results_and_page(tmp_path: Path) -> None:
     plan = plan_of(tmp_path / "out")
     assert [len(figure.scenes("quick")) for figure in plan.figures] == [2, 2]
     assert len(plan.runs) == 3  # one is shared
@@ -48,10 +52,11 @@ def test_figures_data_results_and_page(tmp_path):
     assert not re.search(r"https?://|@import|url\(|<script", page)
     assert "A &lt;tiny&gt; paper" in page
     assert "2 agree" in page
-    assert "3 with fix mpc" in page
+    assert "3 by the engine mpc" in page
+    assert "those of a &lt;tiny&gt; world" in page
 
 
-def test_finished_runs_are_skipped(tmp_path):
+def test_finished_runs_are_skipped(tmp_path: Path) -> None:
     plan = plan_of(tmp_path)
     carry_out(plan, jobs=2)
     before = {run.folder: (run.folder / "progress.json").stat().st_mtime_ns for run in plan.runs}
@@ -60,12 +65,15 @@ def test_finished_runs_are_skipped(tmp_path):
     assert before == after
 
 
-def test_a_failed_run_costs_its_own_figures_only(tmp_path, monkeypatch):
+def test_a_failed_run_costs_its_own_figures_only(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
     plan = plan_of(tmp_path)
     lost = next(run for run in plan.runs if run.scene.seed == 3)  # of the second figure
-    run_all = session.run_all
 
-    def one_fails(runs, jobs, report=None):
+    def one_fails(
+        runs: Sequence[Run], jobs: int, report: Callable[[Advance], None] | None = None
+    ) -> list[Failure]:
         others = [run for run in runs if run is not lost]
         return [*run_all(others, jobs, report), Failure(lost, "stopped")]
 
@@ -77,8 +85,8 @@ def test_a_failed_run_costs_its_own_figures_only(tmp_path, monkeypatch):
     assert not (tmp_path / "figure-2.png").exists()
 
 
-def test_a_figure_that_cannot_be_made_costs_itself_only(tmp_path):
-    def make(folders, quality):
+def test_a_figure_that_cannot_be_made_costs_itself_only(tmp_path: Path) -> None:
+    def make(directories: Directories, quality: Quality) -> Never:
         raise ValueError("every point needs a positive error")
 
     plan = plan_of(tmp_path)
@@ -88,7 +96,7 @@ def test_a_figure_that_cannot_be_made_costs_itself_only(tmp_path):
     assert done.left_out == ["figure 0 left out: every point needs a positive error"]
 
 
-def test_goes_on_after_kill_9(tmp_path):
+def test_goes_on_after_kill_9(tmp_path: Path) -> None:
     words = [sys.executable, "-m", "tests.narrows.papers.tiny", str(tmp_path), "60"]
     process = subprocess.Popen(words, cwd=ROOT, env=os.environ | {"PYTHONPATH": str(ROOT)})
     plan = plan_of(tmp_path, duration=60.0)

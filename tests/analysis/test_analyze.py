@@ -1,5 +1,8 @@
+"""A run directory through all measures of its manifest, against what was written into it."""
+
 import json
 import math
+from pathlib import Path
 from typing import Any
 
 import numpy as np
@@ -7,21 +10,21 @@ import pytest
 from scipy.integrate import quad
 
 from analysis import RunDirectoryError, analyze
+from tests.analysis import run_writer
 from tests.analysis.run_writer import (
-    BULK,
-    CHANNEL,
-    POISEUILLE,
     half_cells,
+    slit,
     write_channel,
     write_manifest,
     write_observables,
     write_profile,
 )
+from tests.conftest import ROOT
 
 PNG = b"\x89PNG"
 
 
-def analyzed(path) -> dict[str, Any]:
+def analyzed(path: Path) -> dict[str, Any]:
     """Runs the analysis; what it returns is what it wrote, strict JSON, and the figures exist."""
     summary = analyze(path)
 
@@ -29,13 +32,20 @@ def analyzed(path) -> dict[str, Any]:
         raise AssertionError(f"{constant} is no JSON")
 
     assert json.loads((path / "summary.json").read_text(), parse_constant=refuse) == summary
-    assert not list(path.glob("*.partial"))
+    assert not [file for file in path.iterdir() if file.name.startswith(".")]  # drafts
     assert summary["figures"] == sorted(file.name for file in path.glob("*.png"))
     assert all((path / name).read_bytes().startswith(PNG) for name in summary["figures"])
     return summary
 
 
-def poiseuille(path, intervals=1000, gravity=0.01, v_max=0.25, v_wall=0.05, noise=0.02, **changes):
+def poiseuille(
+    path: Path,
+    intervals: int = 1000,
+    gravity: float = 0.01,
+    v_max: float = 0.25,
+    v_wall: float = 0.05,
+    noise: float = 0.02,
+) -> None:
     """A parabola with noise; another one, twice as fast, during the equilibration."""
     y = half_cells(10.0)
     exact = [
@@ -46,8 +56,7 @@ def poiseuille(path, intervals=1000, gravity=0.01, v_max=0.25, v_wall=0.05, nois
     random = np.random.default_rng(1)
     velocity = exact + noise * random.normal(size=(intervals, len(y)))
     velocity[:5] *= 2
-    fields = POISEUILLE | {"gravity": gravity} | changes.pop("fields", {})
-    write_manifest(path, "poiseuille", fields, **changes)
+    write_manifest(path, "poiseuille", slit(gravity))
     write_profile(path, y, np.full_like(velocity, 200.0), velocity)
     temperature = 1 + 0.01 * random.normal(size=intervals)
     temperature[:5] = 9.0
@@ -57,10 +66,10 @@ def poiseuille(path, intervals=1000, gravity=0.01, v_max=0.25, v_wall=0.05, nois
 def close(entry: dict[str, Any], expected: float) -> bool:
     """Within four errors, and the error is below a tenth of the value."""
     value, error = entry["value"], entry["error"]
-    return abs(value - expected) < 4 * error < 0.4 * abs(expected)
+    return bool(abs(value - expected) < 4 * error < 0.4 * abs(expected))
 
 
-def test_poiseuille(tmp_path):
+def test_poiseuille(tmp_path: Path) -> None:
     poiseuille(tmp_path)
     summary = analyzed(tmp_path)
     assert summary["scene"] == "poiseuille"
@@ -84,7 +93,7 @@ def test_poiseuille(tmp_path):
     assert summary["figures"] == ["profile.png"]
 
 
-def test_flow_to_the_left_has_the_same_viscosity(tmp_path):
+def test_flow_to_the_left_has_the_same_viscosity(tmp_path: Path) -> None:
     poiseuille(tmp_path, gravity=-0.01, v_max=-0.25, v_wall=-0.05)
     summary = analyzed(tmp_path)
     assert summary["viscosity"]["value"] == pytest.approx(0.5, rel=0.01)
@@ -94,7 +103,7 @@ def test_flow_to_the_left_has_the_same_viscosity(tmp_path):
 @pytest.mark.parametrize(
     ("gravity", "reason"), [(0.0, "no gravity"), (-0.01, "the fluid does not flow along gravity")]
 )
-def test_no_viscosity(tmp_path, gravity, reason):
+def test_no_viscosity(tmp_path: Path, gravity: float, reason: str) -> None:
     poiseuille(tmp_path, gravity=gravity)
     viscosity = analyzed(tmp_path)["viscosity"]
     assert viscosity["value"] is None
@@ -102,23 +111,25 @@ def test_no_viscosity(tmp_path, gravity, reason):
     assert viscosity["theory"] is not None
 
 
-def test_short_run_has_lower_bounds_for_errors(tmp_path):
+def test_short_run_has_lower_bounds_for_errors(tmp_path: Path) -> None:
     poiseuille(tmp_path, intervals=10)
     summary = analyzed(tmp_path)
     assert summary["viscosity"]["error"] > 0
     assert summary["viscosity"]["reason"] == "at least: 5 samples are too few"
 
 
-def test_fluid_without_theory(tmp_path):
+def test_fluid_without_theory(tmp_path: Path) -> None:
     poiseuille(tmp_path)
-    write_manifest(tmp_path, "poiseuille", POISEUILLE, viscosity_theory=None)
+    system = slit(gravity=0.01)
+    system["solvent"]["viscosity_theory"] = None
+    write_manifest(tmp_path, "poiseuille", system)
     summary = analyzed(tmp_path)
     assert summary["viscosity"]["theory"] is None
     assert summary["reynolds_number"]["value"] is None
     assert summary["reynolds_number"]["reason"].startswith("kinetic theory has no viscosity")
 
 
-def bulk(path, **fields):
+def bulk(path: Path, shear_wave: float = 0.1) -> None:
     y = half_cells(32.0)
     rate = 0.6 * (2 * math.pi / 32) ** 2
     times = np.arange(1, 201)
@@ -126,12 +137,12 @@ def bulk(path, **fields):
     wave = 0.1 * np.exp(-rate * times)[:, None] * np.sin(2 * np.pi * y / 32)
     wave[:5] *= 2  # in the equilibration
     velocity = wave + 1e-4 * random.normal(size=wave.shape)
-    write_manifest(path, "bulk", BULK | fields, fluid_looks=1)
+    write_manifest(path, "bulk", run_writer.bulk(shear_wave))
     write_profile(path, y, np.full_like(velocity, 160.0), velocity)
     write_observables(path, np.ones(200), np.zeros(200))
 
 
-def test_shear_wave(tmp_path):
+def test_shear_wave(tmp_path: Path) -> None:
     bulk(tmp_path)
     summary = analyzed(tmp_path)
     assert summary["viscosity"]["value"] == pytest.approx(0.6, rel=0.01)
@@ -140,7 +151,7 @@ def test_shear_wave(tmp_path):
     assert summary["figures"] == ["shear_wave.png"]
 
 
-def test_fluid_at_rest_has_no_viscosity(tmp_path):
+def test_fluid_at_rest_has_no_viscosity(tmp_path: Path) -> None:
     bulk(tmp_path, shear_wave=0.0)
     summary = analyzed(tmp_path)
     assert "viscosity" not in summary
@@ -148,7 +159,7 @@ def test_fluid_at_rest_has_no_viscosity(tmp_path):
     assert summary["temperature"] == {"value": 1.0, "error": 0.0}
 
 
-def channel(path, frames=601, colloids=7, mass=100.0):
+def channel(path: Path, frames: int = 601, colloids: int = 7, mass: float = 100.0) -> None:
     """Random walkers with a drift of 0.03 in a fluid whose whole moves at 0.01; a zigzag of 0.2."""
     random = np.random.default_rng(3)
     times = np.arange(frames)[:, None]
@@ -162,7 +173,7 @@ def channel(path, frames=601, colloids=7, mass=100.0):
     write_channel(path, np.stack([x, y], axis=2), velocities, mean_velocity, total_steps=6000)
 
 
-def test_channel(tmp_path):
+def test_channel(tmp_path: Path) -> None:
     channel(tmp_path)
     summary = analyzed(tmp_path)
     assert summary["finished"]
@@ -199,7 +210,7 @@ def test_channel(tmp_path):
     ]
 
 
-def test_a_run_that_went_wrong_says_so(tmp_path):
+def test_a_run_that_went_wrong_says_so(tmp_path: Path) -> None:
     """Colloids twice as hot as the fluid, two of them 1 apart in one frame."""
     channel(tmp_path, mass=50.0)
     trajectory = tmp_path / "trajectory.lammpsdump"
@@ -213,7 +224,7 @@ def test_a_run_that_went_wrong_says_so(tmp_path):
     assert overlapping.startswith("two colloids came within 1 of each other")
 
 
-def test_single_colloid_has_no_chain(tmp_path):
+def test_single_colloid_has_no_chain(tmp_path: Path) -> None:
     channel(tmp_path, frames=101, colloids=1)
     summary = analyzed(tmp_path)
     assert not {"spacings", "zigzag", "pair_correlation"} & summary.keys()
@@ -226,7 +237,7 @@ def test_single_colloid_has_no_chain(tmp_path):
     assert summary["figures"] == ["profile.png", "settling_speed.png", "space_time.png"]
 
 
-def test_two_colloids_have_a_spacing_and_no_zigzag(tmp_path):
+def test_two_colloids_have_a_spacing_and_no_zigzag(tmp_path: Path) -> None:
     channel(tmp_path, frames=101, colloids=2)
     summary = analyzed(tmp_path)
     assert summary["spacings"]["groups"] == []
@@ -234,7 +245,7 @@ def test_two_colloids_have_a_spacing_and_no_zigzag(tmp_path):
     assert "zigzag" not in summary
 
 
-def test_run_in_progress_uses_what_both_files_hold(tmp_path):
+def test_run_in_progress_uses_what_both_files_hold(tmp_path: Path) -> None:
     channel(tmp_path)
     file = tmp_path / "observables.dat"
     file.write_text("".join(file.read_text().splitlines(keepends=True)[:302]))
@@ -244,12 +255,12 @@ def test_run_in_progress_uses_what_both_files_hold(tmp_path):
     assert close(summary["settling_speed"], 0.02)
 
 
-def test_analysis_can_be_repeated(tmp_path):
+def test_analysis_can_be_repeated(tmp_path: Path) -> None:
     channel(tmp_path, frames=101)
     assert analyze(str(tmp_path)) == analyze(tmp_path)
 
 
-def test_nothing_after_the_equilibration(tmp_path):
+def test_nothing_after_the_equilibration(tmp_path: Path) -> None:
     poiseuille(tmp_path, intervals=5)
     with pytest.raises(RunDirectoryError) as error:
         analyze(tmp_path)
@@ -259,7 +270,7 @@ def test_nothing_after_the_equilibration(tmp_path):
     assert not (tmp_path / "summary.json").exists()
 
 
-def test_trajectory_ends_in_the_equilibration(tmp_path):
+def test_trajectory_ends_in_the_equilibration(tmp_path: Path) -> None:
     channel(tmp_path, frames=101)
     file = tmp_path / "trajectory.lammpsdump"
     file.write_text("".join(file.read_text().splitlines(keepends=True)[: 6 * (9 + 7)]))
@@ -271,16 +282,85 @@ def test_trajectory_ends_in_the_equilibration(tmp_path):
     )
 
 
-def test_manifest_without_the_mass_of_a_colloid(tmp_path):
+def test_mass_of_a_colloid_that_is_none(tmp_path: Path) -> None:
     channel(tmp_path, frames=101)
-    write_manifest(tmp_path, "channel", CHANNEL, colloids=7, colloid_mass=None)
-    with pytest.raises(RunDirectoryError, match="colloid_mass must be positive"):
+    system = run_writer.channel(7)
+    system["species"][0]["mass"] = None
+    write_manifest(tmp_path, "channel", system)
+    with pytest.raises(RunDirectoryError, match=r"system\.species\.0\.mass: should be a valid num"):
         analyze(tmp_path)
 
 
-def test_slit_with_too_few_bins_for_a_parabola(tmp_path):
+def test_slit_with_too_few_bins_for_a_parabola(tmp_path: Path) -> None:
     poiseuille(tmp_path, intervals=20)
     y = np.array([2.5, 7.5])
     write_profile(tmp_path, y, np.ones((20, 2)), np.ones((20, 2)))
     with pytest.raises(RunDirectoryError, match=r"fluid_profile.dat: fewer than 3 bins hold fluid"):
         analyze(tmp_path)
+
+
+def test_a_manifest_may_name_other_measures(tmp_path: Path) -> None:
+    channel(tmp_path, frames=101)
+    write_manifest(tmp_path, "mine", run_writer.channel(7) | {"measures": ["spacings"]})
+    summary = analyzed(tmp_path)
+    assert summary["scene"] == "mine"
+    assert "spacings" in summary
+    assert not {"temperature", "settling_speed", "zigzag"} & summary.keys()
+    assert summary["figures"] == ["spacings.png"]
+
+
+def test_an_unknown_measure_is_named(tmp_path: Path) -> None:
+    channel(tmp_path, frames=101)
+    write_manifest(tmp_path, "channel", run_writer.channel(7) | {"measures": ["colour"]})
+    with pytest.raises(RunDirectoryError) as error:
+        analyze(tmp_path)
+    assert str(error.value).startswith(
+        f"{tmp_path / 'manifest.json'}: measure colour: must be one of colloid_temperature, "
+    )
+    assert not (tmp_path / "summary.json").exists()
+
+
+def test_a_measure_names_the_part_that_it_misses(tmp_path: Path) -> None:
+    channel(tmp_path, frames=101, colloids=2)
+    two = {"name": "others", "count": 1, "mass": 1.0, "radius": 1.0}
+    one = {"name": "colloids", "count": 1, "mass": 1.0, "radius": 1.0}
+    mixed = run_writer.channel(2) | {"species": [one, two], "measures": ["colloid_temperature"]}
+    for system, complaint in (
+        (mixed, "one species is needed; there is colloids, others"),
+        (
+            slit(0.1) | {"solvent": None, "measures": ["slit_flow"]},
+            "the scene channel has no fluid",
+        ),
+    ):
+        write_manifest(tmp_path, "channel", system)
+        with pytest.raises(RunDirectoryError) as error:
+            analyze(tmp_path)
+        assert str(error.value) == f"{tmp_path}: {complaint}"
+
+
+def test_a_run_of_narrows_0_1_is_analysed_alike(tmp_path: Path) -> None:
+    channel(tmp_path)
+    summary = analyzed(tmp_path)
+    old = json.loads((ROOT / "tests" / "run_files" / "manifests_of_0_1.json").read_text())[0]
+    old |= {"engine": "srd", "colloids": 7, "colloid_mass": 100.0, "fluid_particles": 4000}
+    old |= {"time_step": 0.1, "steps_per_collision": 1, "sample_steps": 10, "fluid_looks": 1}
+    old |= {"equilibration_steps": 50, "total_steps": 6000, "viscosity_theory": 0.75}
+    (tmp_path / "manifest.json").write_text(json.dumps(old))
+    assert analyzed(tmp_path) == summary
+
+
+def test_particles_without_a_fluid(tmp_path: Path) -> None:
+    random = np.random.default_rng(4)
+    temperature = 1 + 0.01 * random.normal(size=200)
+    temperature[:5] = 9.0  # in the equilibration
+    columns = {"temperature": temperature, "potential_energy": 3 + 0 * temperature}
+    table = run_writer.AVERAGES | {"columns": list(columns)}
+    system = run_writer.channel(3) | {"solvent": None, "drives": [], "outputs": [table]}
+    write_manifest(tmp_path, "gas", system | {"measures": ["particle_averages"]})
+    rows = [f"{10 * n} {t:.10g} 3" for n, t in enumerate(temperature, start=1)]
+    title = "# TimeStep v_temperature v_potential_energy"
+    (tmp_path / "observables.dat").write_text("\n".join([title, *rows, ""]))
+    summary = analyzed(tmp_path)
+    assert close(summary["temperature"], 1.0)
+    assert summary["potential_energy"] == {"value": 3.0, "error": 0.0}
+    assert (summary["fluid_particles"], summary["colloids"], summary["figures"]) == (0, 3, [])
