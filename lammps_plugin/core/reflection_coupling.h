@@ -1,0 +1,342 @@
+// Colloids as hard, rotating spheres (disks in 2D) that reflect the fluid with thermal velocities
+// (hecht-2005, section IV).
+//
+// A particle that has ended inside a colloid is put at the surface: at the nearest point, half a
+// step ago; or at the point where it came in, when it did. It leaves with a velocity drawn from (13)
+// and (14) in the frame of the surface, flies for the rest of the time, and is looked at again, up
+// to ten contacts.
+//
+// The frame of the surface. A colloid takes several contacts in an interval. If all left with the
+// velocity that it had before them, its temperature would come out high by half the fraction of its
+// velocity that it loses in an interval, 5 to 10 % in practice. What the incoming particles bring is
+// decided by its path up to now; so those that leave must see a later velocity, the one for which
+// the exchange as a whole sees the mean of before and after: V + share (V' - V), with V' found
+// together with the contacts. For a translation the share is (4/3 + pi/6) / 2 in 3D and
+// (3/2 + pi/4) / 2 in 2D, from the free-molecular friction by what comes and what leaves (Epstein,
+// Phys. Rev. 23, 710, 1924); for a rotation it is 1/2, as what comes does not know of it.
+
+#pragma once
+
+#include "colloid_cells.h"
+#include "coupling.h"
+#include "streaming.h"
+
+#include <algorithm>
+#include <map>
+#include <string>
+
+namespace mpc {
+
+enum class Placement { Nearest, Entry };
+
+template <int D> class ReflectionCoupling : public Coupling<D> {
+ public:
+  using Radii = std::map<int, double>;    // by colloid type
+
+  ReflectionCoupling(Radii radii, Placement placement, double interval, double temperature,
+                     const Vector<D> &field, const Walls<D> *walls)
+    : radii_(std::move(radii)), placement_(placement), interval_(interval),
+      temperature_(temperature), field_(field), walls_(walls)
+  {
+  }
+
+  bool feels(int type) const override { return radii_.count(type) > 0; }
+  double room(int type) const override { return radii_.at(type); }
+
+  double reach() const override
+  {
+    double reach = 0;
+    for (const auto &[type, radius] : radii_) reach = std::max(reach, radius);
+    return reach;
+  }
+
+  void begin(const Grid<D> &, const std::vector<Colloid<D>> &colloids, double speed) override
+  {
+    colloids_ = colloids;
+    allowance_ = speed * interval_;
+  }
+
+  bool after_flight() const override { return true; }
+
+  const std::vector<int> &hold(const Grid<D> &grid) override
+  {
+    cells_.begin(grid);
+    enter(allowance_);
+    return cells_.heads();
+  }
+
+  // The host may show other images now.
+  void meet(const std::vector<Colloid<D>> &colloids, const CounterRandom &random) override
+  {
+    std::swap(held_, cells_);
+    cells_.begin(held_.grid());
+    colloids_ = colloids;
+    enter(0);
+    for (int cell = 0; cell < cells_.grid().cells(); ++cell)
+      if (cells_.any(cell) && !held_.any(cell)) throw_moved_too_far(cell);
+    random_ = random;
+    sums_.assign(WIDTH * colloids.size(), 0.0);
+    impulses_.assign(colloids.size(), {});
+  }
+
+  void announce(const Flight<D> &flight, int cell) override
+  {
+    const auto contact = find(flight, cell);
+    if (contact.colloid < 0) return;
+    const auto came = relative_to_rest(contact, leaving(flight, contact));
+    double *sum = &sums_[WIDTH * contact.colloid];
+    *sum++ += 1;
+    for (int a = 0; a < D; ++a) *sum++ += contact.arm[a];
+    for (int a = 0; a < D; ++a)
+      for (int b = a; b < D; ++b) *sum++ += contact.arm[a] * contact.arm[b];
+    for (double component : came) *sum++ += component;
+    for (double component : torque(contact.arm, came)) *sum++ += component;
+  }
+
+  // The velocities of the surfaces.
+  void decide(Processes &processes) override
+  {
+    processes.sum_images(sums_, WIDTH);
+    surfaces_.clear();
+    for (std::size_t c = 0; c < colloids_.size(); ++c)
+      surfaces_.push_back(solve(colloids_[c], &sums_[WIDTH * c]));
+  }
+
+  bool reflect(Flight<D> &flight, int cell) override
+  {
+    if (flight.contacts == MOST_CONTACTS) return false;
+    const auto contact = find(flight, cell);
+    if (contact.colloid < 0) return false;
+    const auto &colloid = colloids_[contact.colloid];
+    const auto &surface = surfaces_[contact.colloid];
+    auto v = leaving(flight, contact);
+    const auto turning = cross(surface.spin, contact.arm);
+    Vector<D> x, impulse;
+    for (int a = 0; a < D; ++a) {
+      v[a] += surface.v[a] + turning[a];
+      impulse[a] = contact.v[a] - v[a];
+      x[a] = colloid.x[a] - contact.left * colloid.v[a] + contact.arm[a];
+    }
+    auto &push = impulses_[contact.colloid];
+    const auto turn = torque(contact.arm, impulse);
+    for (int a = 0; a < D; ++a) push.linear[a] += impulse[a];
+    for (std::size_t s = 0; s < turn.size(); ++s) push.angular[s] += turn[s];
+    flight.x = x;
+    flight.v = v;
+    fly(flight, contact.left);
+    flight.flown = contact.left;
+    ++flight.contacts;
+    return true;
+  }
+
+ private:
+  using Coupling<D>::impulses_;
+  static constexpr int MOST_CONTACTS = 10;    // N_max
+  static constexpr int SPINS = D == 2 ? 1 : 3;
+  static constexpr int WIDTH = 1 + D + D * (D + 1) / 2 + D + SPINS;
+  static constexpr double SHARE = D == 2 ? (1.5 + M_PI / 4) / 2 : (4.0 / 3 + M_PI / 6) / 2;
+
+  struct Contact {
+    int colloid = -1;
+    Vector<D> arm, v;    // from the centre to the contact; of the particle that comes
+    double left;         // time from the contact to the end of the interval
+  };
+
+  struct Surface {
+    Vector<D> v;
+    Spin<D> spin;
+  };
+
+  void enter(double margin)
+  {
+    for (std::size_t c = 0; c < colloids_.size(); ++c)
+      cells_.enter(static_cast<int>(c), colloids_[c].x, radius(colloids_[c]) + margin);
+  }
+
+  double radius(const Colloid<D> &colloid) const { return radii_.at(colloid.type); }
+
+  // The contact with the colloid that a particle is deepest in, if it is in any.
+  Contact find(const Flight<D> &flight, int cell) const
+  {
+    Contact contact;
+    Vector<D> inside{};    // from the centre
+    double least = 1;
+    cells_.each(cell, [&](int c) {
+      const auto &colloid = colloids_[c];
+      Vector<D> from;
+      for (int a = 0; a < D; ++a) {
+        const double size = cells_.grid().box[a];
+        from[a] = flight.x[a] - colloid.x[a];
+        if (cells_.grid().periodic[a]) from[a] -= size * std::rint(from[a] / size);
+      }
+      const double depth = square<D>(from) / (radius(colloid) * radius(colloid));
+      if (!(depth < least)) return;
+      least = depth;
+      inside = from;
+      contact.colloid = c;
+    });
+    if (contact.colloid < 0) return contact;
+
+    const auto &colloid = colloids_[contact.colloid];
+    const double size = radius(colloid);
+    contact.left = placement_ == Placement::Entry ? entry(flight, colloid, inside, size) : -1;
+    contact.v = flight.v;
+    if (contact.left < 0) {
+      contact.left = 0.5 * (placement_ == Placement::Entry ? flight.flown : interval_);
+    } else {
+      for (int a = 0; a < D; ++a) {
+        const double mean = flight.v[a] - 0.5 * flight.flown * field_[a] - colloid.v[a];
+        inside[a] -= contact.left * mean;
+        contact.v[a] -= contact.left * field_[a];
+      }
+    }
+    const double scale = size / std::sqrt(square<D>(inside));
+    for (int a = 0; a < D; ++a) contact.arm[a] = scale * inside[a];
+    return contact;
+  }
+
+  // How long ago the particle came in, on a straight way in the frame of the colloid; -1 when it has
+  // been inside all the time.
+  double entry(const Flight<D> &flight, const Colloid<D> &colloid, const Vector<D> &inside,
+               double size) const
+  {
+    double approach = 0, speed = 0;
+    for (int a = 0; a < D; ++a) {
+      const double v = flight.v[a] - 0.5 * flight.flown * field_[a] - colloid.v[a];
+      approach += v * inside[a];
+      speed += v * v;
+    }
+    const double depth = size * size - square<D>(inside);
+    const double ago = (approach + std::sqrt(approach * approach + speed * depth)) / speed;
+    const bool came = ago <= flight.flown * (1 + 1e-9);    // rounding, of one that comes back at once
+    return came ? std::min(ago, flight.flown) : -1;
+  }
+
+  // The velocity that a particle leaves with, in the frame of the surface (13, 14): along the normal
+  // and along tangents, the first of them beside the axis that is the least along the normal.
+  Vector<D> leaving(const Flight<D> &flight, const Contact &contact) const
+  {
+    const auto words = random_.words(Stream::Reflection, static_cast<std::uint64_t>(flight.id),
+                                     static_cast<std::uint64_t>(flight.contacts));
+    const auto u = uniforms(words);
+    const double scale = 1 / std::sqrt(square<D>(contact.arm));
+    Vector<D> n;
+    for (int a = 0; a < D; ++a) n[a] = scale * contact.arm[a];
+    const double thermal = std::sqrt(temperature_);
+    const double along = thermal * std::sqrt(-2 * logarithm(1 - u[0]));
+    const auto [first, second] = normal_pair(u[2], u[3]);
+    if constexpr (D == 2) {
+      (void)second;
+      return {along * n[0] - thermal * first * n[1], along * n[1] + thermal * first * n[0]};
+    } else {
+      int axis = 0;
+      for (int a = 1; a < D; ++a)
+        if (std::abs(n[a]) < std::abs(n[axis])) axis = a;
+      Vector<3> beside{};
+      beside[axis] = 1;
+      for (int a = 0; a < 3; ++a) beside[a] -= n[axis] * n[a];
+      const double length = std::sqrt(square<3>(beside));
+      for (double &component : beside) component /= length;
+      const auto other = cross(n, beside);
+      Vector<3> v;
+      for (int a = 0; a < 3; ++a)
+        v[a] = along * n[a] + thermal * (first * beside[a] + second * other[a]);
+      return v;
+    }
+  }
+
+  // What a contact would give to a colloid whose surface rests.
+  static Vector<D> relative_to_rest(const Contact &contact, const Vector<D> &leaving)
+  {
+    Vector<D> impulse;
+    for (int a = 0; a < D; ++a) impulse[a] = contact.v[a] - leaving[a];
+    return impulse;
+  }
+
+  // V and Omega of the surface from M (V' - V) = P - sum (V + Omega x r) and
+  // I (Omega' - Omega) = Q - sum r x (V + Omega x r), primed ones as they are after all contacts.
+  static Surface solve(const Colloid<D> &colloid, const double *sum)
+  {
+    constexpr int N = D + SPINS;
+    const double count = *sum++;
+    Vector<D> arms;
+    for (int a = 0; a < D; ++a) arms[a] = *sum++;
+    double squares[D][D], trace = 0;
+    for (int a = 0; a < D; ++a)
+      for (int b = a; b < D; ++b) squares[a][b] = squares[b][a] = *sum++;
+    for (int a = 0; a < D; ++a) trace += squares[a][a];
+
+    double matrix[N][N], right[N];
+    for (int column = 0; column < N; ++column) {
+      Vector<D> v{};
+      Spin<D> spin{};
+      (column < D ? v[column] : spin[column - D]) = 1;
+      const auto turning = cross(spin, arms);
+      const auto twist = torque(arms, v);
+      for (int a = 0; a < D; ++a) matrix[a][column] = count * v[a] + turning[a];
+      for (int s = 0; s < SPINS; ++s) {
+        double of_spin = trace * spin[s];
+        if constexpr (D == 3)
+          for (int b = 0; b < 3; ++b) of_spin -= squares[s][b] * spin[b];
+        matrix[D + s][column] = twist[s] + of_spin;
+      }
+    }
+    for (int row = 0; row < N; ++row) {
+      const double inertia = row < D ? colloid.mass / SHARE : 2 * colloid.inertia;
+      matrix[row][row] += inertia;
+      right[row] = *sum++ + inertia * (row < D ? colloid.v[row] : colloid.spin[row - D]);
+    }
+    for (int pivot = 0; pivot < N; ++pivot)    // symmetric and positive: no exchange of rows
+      for (int row = pivot + 1; row < N; ++row) {
+        const double factor = matrix[row][pivot] / matrix[pivot][pivot];
+        for (int column = pivot; column < N; ++column)
+          matrix[row][column] -= factor * matrix[pivot][column];
+        right[row] -= factor * right[pivot];
+      }
+    for (int row = N - 1; row >= 0; --row) {
+      for (int column = row + 1; column < N; ++column) right[row] -= matrix[row][column] * right[column];
+      right[row] /= matrix[row][row];
+    }
+    Surface surface;
+    std::copy_n(right, D, surface.v.begin());
+    std::copy_n(right + D, SPINS, surface.spin.begin());
+    return surface;
+  }
+
+  void fly(Flight<D> &flight, double time) const
+  {
+    if (!walls_) {
+      for (int a = 0; a < D; ++a) {
+        flight.x[a] += time * (flight.v[a] + 0.5 * time * field_[a]);
+        flight.v[a] += time * field_[a];
+      }
+      return;
+    }
+    for (int a : walls_->axes()) flight.x[a] = std::clamp(flight.x[a], 0.0, walls_->width(a));
+    if (!fly_between<D>(*walls_, flight.x, flight.v, field_, time))
+      throw TooManyBounces::fault(static_cast<std::uint32_t>(flight.id));
+  }
+
+  [[noreturn]] void throw_moved_too_far(int cell) const
+  {
+    std::int64_t id = 0;
+    cells_.each(cell, [&](int c) { id = static_cast<std::int64_t>(colloids_[c].id); });
+    throw Fault("colloid " + std::to_string(id) + " moved further since the last collision than " +
+                std::to_string(allowance_) +
+                ", which the choice of fluid to reflect allows: a force on it is too strong");
+  }
+
+  Radii radii_;
+  Placement placement_;
+  double interval_, temperature_;
+  Vector<D> field_;
+  const Walls<D> *walls_;
+  std::vector<Colloid<D>> colloids_;
+  double allowance_ = 0;           // how far they may move in the interval
+  ColloidCells<D> cells_, held_;    // of the colloids now, and of where they could come to
+  CounterRandom random_{0, 0};
+  std::vector<double> sums_;
+  std::vector<Surface> surfaces_;
+};
+
+}    // namespace mpc
