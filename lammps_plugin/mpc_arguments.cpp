@@ -120,9 +120,10 @@ MpcArguments<D>::MpcArguments(LAMMPS *lmp, int narg, char **arg)
         error->all(FLERR, "fix mpc: wall {}: the face is periodic", face);
       for (int a = 0; a < D; ++a)
         wall_velocities[which][a] = number(first + 1 + a, "wall velocity", finite, "finite");
-      if (wall_velocities[which][which / 2] != 0)
-        error->all(FLERR, "fix mpc: wall {}: it moves along itself only, its v{} must be 0", face,
-                   "xyz"[which / 2]);
+      for (int a = 0; a < D; ++a)
+        if (wall_velocities[which][a] != 0 && !domain->periodicity[a])
+          error->all(FLERR, "fix mpc: wall {}: it can move along periodic axes only, its v{} must be 0",
+                     face, "xyz"[a]);
     } else if (keyword == "virtual") {
       virtual_particles = choice(values(1), "virtual", {"yes", "no"}) == "yes";
     } else if (keyword == "compensate") {

@@ -187,9 +187,9 @@ template <int D> class ReflectionCoupling : public Coupling<D> {
       for (int a = 0; a < D; ++a) {
         const double mean = flight.v[a] - 0.5 * flight.flown * field_[a] - colloid.v[a];
         inside[a] -= contact.left * mean;
-        contact.v[a] -= contact.left * field_[a];
       }
     }
+    for (int a = 0; a < D; ++a) contact.v[a] -= contact.left * field_[a];
     const double scale = size / std::sqrt(square<D>(inside));
     for (int a = 0; a < D; ++a) contact.arm[a] = scale * inside[a];
     return contact;
