@@ -24,6 +24,13 @@ template <int D> class ColloidCells {
   // Enter a colloid at all cells that come closer to a place than a radius.
   void enter(int colloid, const Vector<D> &x, double radius)
   {
+    enter(colloid, x, radius, [](int, double) {});
+  }
+
+  // The same, visiting each cell with its square distance from the place.
+  template <class Visit>
+  void enter(int colloid, const Vector<D> &x, double radius, const Visit &visit)
+  {
     std::array<int, D> first, last;
     for (int a = 0; a < D; ++a) {
       const auto row = [&](double at) {
@@ -46,6 +53,7 @@ template <int D> class ColloidCells {
       if (distance < radius * radius) {
         entries_.push_back({colloid, head_[cell]});
         head_[cell] = static_cast<int>(entries_.size()) - 1;
+        visit(cell, distance);
       }
       int a = 0;
       while (a < D && ++rows[a] > last[a]) {
@@ -57,7 +65,6 @@ template <int D> class ColloidCells {
   }
 
   bool any(int cell) const { return head_[cell] >= 0; }
-  const std::vector<int> &heads() const { return head_; }    // negative where there is none
 
   template <class Visit> void each(int cell, const Visit &visit) const
   {

@@ -5,8 +5,8 @@
 //   at every MD step    at the interval's beginning it takes the particles that it will move itself;
 //                       all others fly free through the whole interval at once. At its end it gives
 //                       them back (force_coupling.h)
-//   after the flight    particles that may have ended inside a colloid are held back, and placed
-//                       outside (reflection_coupling.h)
+//   after the flight    particles that may have met a colloid on their way are held back, and taken
+//                       from where they met it on another way (reflection_coupling.h)
 //   in the collision    colloids are particles of their cells (cell_coupling.h)
 //
 // What it does to colloids is forces and torques in the first, impulses of both in the others.
@@ -69,10 +69,10 @@ template <int D> class Coupling {
   virtual void kick(double /*time*/) {}
   virtual void give_back(Fluid<D> &) {}
 
-  // After the flight. The grid of the next collision; in those of its cells that have a number not
-  // negative particles are held back.
+  // After the flight. The grid of the next collision; for each of its cells, the square of the speed
+  // from which particles are held back.
   virtual bool after_flight() const { return false; }
-  virtual const std::vector<int> &hold(const Grid<D> &) { return taken_; }
+  virtual const std::vector<double> &hold(const Grid<D> &) { return slowest_; }
 
   // Colloids as they are now; then all particles that were held, with their cell; then, when all
   // processes know of all of them, again for each, until none touches a colloid any more.
@@ -91,6 +91,7 @@ template <int D> class Coupling {
 
  protected:
   std::vector<int> taken_;
+  std::vector<double> slowest_;
   std::vector<Push<D>> impulses_;
 };
 

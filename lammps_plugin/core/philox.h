@@ -39,7 +39,8 @@ enum class Stream : std::uint64_t {
   Shuffle = 5,
   Bath = 6,
   Create = 7,
-  Reflection = 8
+  Reflection = 8,
+  Pair = 9
 };
 
 inline double uniform(std::uint64_t word)

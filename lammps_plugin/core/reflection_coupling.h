@@ -1,10 +1,11 @@
 // Colloids as hard, rotating spheres (disks in 2D) that reflect the fluid with thermal velocities
 // (hecht-2005, section IV).
 //
-// A particle that has ended inside a colloid is put at the surface: at the nearest point, half a
-// step ago; or at the point where it came in, when it did. It leaves with a velocity drawn from (13)
-// and (14) in the frame of the surface, flies for the rest of the time, and is looked at again, up
-// to ten contacts.
+// Either a particle that has ended inside a colloid is put at the nearest point of the surface, half
+// a step ago. Or a particle that has met a colloid on its way is put where it met it, when it did:
+// also if it has ended outside, as those who graze a colloid do. It leaves with a velocity drawn
+// from (13) and (14) in the frame of the surface, flies for the rest of the time, and is looked at
+// again, up to ten contacts.
 //
 // The frame of the surface. A colloid takes several contacts in an interval. If all left with the
 // velocity that it had before them, its temperature would come out high by half the fraction of its
@@ -38,6 +39,7 @@ template <int D> class ReflectionCoupling : public Coupling<D> {
     : radii_(std::move(radii)), placement_(placement), interval_(interval),
       temperature_(temperature), field_(field), walls_(walls)
   {
+    if (placement == Placement::Entry) way_ = MOST_SPEED * std::sqrt(temperature) * interval;
   }
 
   bool feels(int type) const override { return radii_.count(type) > 0; }
@@ -47,7 +49,7 @@ template <int D> class ReflectionCoupling : public Coupling<D> {
   {
     double reach = 0;
     for (const auto &[type, radius] : radii_) reach = std::max(reach, radius);
-    return reach;
+    return reach + way_;
   }
 
   void begin(const Grid<D> &, const std::vector<Colloid<D>> &colloids, double speed) override
@@ -58,22 +60,34 @@ template <int D> class ReflectionCoupling : public Coupling<D> {
 
   bool after_flight() const override { return true; }
 
-  const std::vector<int> &hold(const Grid<D> &grid) override
+  // From a cell beside a colloid that is looked at in meet, a particle so slow cannot have met it.
+  const std::vector<double> &hold(const Grid<D> &grid) override
   {
     cells_.begin(grid);
-    enter(allowance_);
-    return cells_.heads();
+    slowest_.assign(grid.cells(), HUGE_VAL);
+    const double gain = 0.5 * std::sqrt(square<D>(field_)) * interval_;
+    for (std::size_t c = 0; c < colloids_.size(); ++c) {
+      const double touching = radius(colloids_[c]) + allowance_;
+      cells_.enter(static_cast<int>(c), colloids_[c].x, touching + way_, [&](int cell, double square) {
+        const double way = std::max(std::sqrt(square) - touching, 0.0);
+        const double speed = std::max(way / interval_ - gain, 0.0);
+        slowest_[cell] = std::min(slowest_[cell], speed * speed);
+      });
+    }
+    return slowest_;
   }
 
   // The host may show other images now.
   void meet(const std::vector<Colloid<D>> &colloids, const CounterRandom &random) override
   {
-    std::swap(held_, cells_);
-    cells_.begin(held_.grid());
     colloids_ = colloids;
-    enter(0);
-    for (int cell = 0; cell < cells_.grid().cells(); ++cell)
-      if (cells_.any(cell) && !held_.any(cell)) throw_moved_too_far(cell);
+    cells_.begin(Grid<D>(cells_.grid()));
+    for (std::size_t c = 0; c < colloids_.size(); ++c)
+      cells_.enter(static_cast<int>(c), colloids_[c].x, radius(colloids_[c]) + way_,
+                   [&](int cell, double square) {
+                     if (square < radius(colloids_[c]) * radius(colloids_[c]) && slowest_[cell] > 0)
+                       throw_moved_too_far(colloids_[c]);
+                   });
     random_ = random;
     sums_.assign(WIDTH * colloids.size(), 0.0);
     impulses_.assign(colloids.size(), {});
@@ -131,7 +145,9 @@ template <int D> class ReflectionCoupling : public Coupling<D> {
 
  private:
   using Coupling<D>::impulses_;
+  using Coupling<D>::slowest_;
   static constexpr int MOST_CONTACTS = 10;    // N_max
+  static constexpr double MOST_SPEED = 5;     // thermal speeds; of 1e5 two are faster
   static constexpr int SPINS = D == 2 ? 1 : 3;
   static constexpr int WIDTH = 1 + D + D * (D + 1) / 2 + D + SPINS;
   static constexpr double SHARE = D == 2 ? (1.5 + M_PI / 4) / 2 : (4.0 / 3 + M_PI / 6) / 2;
@@ -147,69 +163,76 @@ template <int D> class ReflectionCoupling : public Coupling<D> {
     Spin<D> spin;
   };
 
-  void enter(double margin)
-  {
-    for (std::size_t c = 0; c < colloids_.size(); ++c)
-      cells_.enter(static_cast<int>(c), colloids_[c].x, radius(colloids_[c]) + margin);
-  }
-
   double radius(const Colloid<D> &colloid) const { return radii_.at(colloid.type); }
 
-  // The contact with the colloid that a particle is deepest in, if it is in any.
+  // The contact that comes first on a particle's way, or, where those who end inside are put at the
+  // nearest point, with the colloid that it is deepest in; perhaps none.
   Contact find(const Flight<D> &flight, int cell) const
   {
     Contact contact;
-    Vector<D> inside{};    // from the centre
-    double least = 1;
+    Vector<D> from{};    // from the centre of the colloid to the particle
+    double most = placement_ == Placement::Entry ? -1 : 0;
     cells_.each(cell, [&](int c) {
       const auto &colloid = colloids_[c];
-      Vector<D> from;
+      Vector<D> separation;
       for (int a = 0; a < D; ++a) {
         const double size = cells_.grid().box[a];
-        from[a] = flight.x[a] - colloid.x[a];
-        if (cells_.grid().periodic[a]) from[a] -= size * std::rint(from[a] / size);
+        separation[a] = flight.x[a] - colloid.x[a];
+        if (cells_.grid().periodic[a]) separation[a] -= size * std::rint(separation[a] / size);
       }
-      const double depth = square<D>(from) / (radius(colloid) * radius(colloid));
-      if (!(depth < least)) return;
-      least = depth;
-      inside = from;
+      const double inside = 1 - square<D>(separation) / (radius(colloid) * radius(colloid));
+      const double ago = placement_ == Placement::Entry ? entry(flight, colloid, separation, inside)
+                                                        : inside;
+      if (!(ago > most)) return;
+      most = ago;
+      from = separation;
       contact.colloid = c;
     });
     if (contact.colloid < 0) return contact;
 
     const auto &colloid = colloids_[contact.colloid];
-    const double size = radius(colloid);
-    contact.left = placement_ == Placement::Entry ? entry(flight, colloid, inside, size) : -1;
-    contact.v = flight.v;
-    if (contact.left < 0) {
-      contact.left = 0.5 * (placement_ == Placement::Entry ? flight.flown : interval_);
-    } else {
-      for (int a = 0; a < D; ++a) {
-        const double mean = flight.v[a] - 0.5 * flight.flown * field_[a] - colloid.v[a];
-        inside[a] -= contact.left * mean;
-      }
+    if (placement_ == Placement::Nearest)
+      contact.left = 0.5 * interval_;
+    else if (most > flight.flown)    // it never came in: it was inside before
+      contact.left = 0.5 * flight.flown;
+    else {
+      contact.left = most;
+      const auto way = relative_velocity(flight, colloid);
+      for (int a = 0; a < D; ++a) from[a] -= most * way[a];
     }
-    for (int a = 0; a < D; ++a) contact.v[a] -= contact.left * field_[a];
-    const double scale = size / std::sqrt(square<D>(inside));
-    for (int a = 0; a < D; ++a) contact.arm[a] = scale * inside[a];
+    const double scale = radius(colloid) / std::sqrt(square<D>(from));
+    for (int a = 0; a < D; ++a) {
+      contact.arm[a] = scale * from[a];
+      contact.v[a] = flight.v[a] - contact.left * field_[a];
+    }
     return contact;
   }
 
-  // How long ago the particle came in, on a straight way in the frame of the colloid; -1 when it has
-  // been inside all the time.
-  double entry(const Flight<D> &flight, const Colloid<D> &colloid, const Vector<D> &inside,
-               double size) const
+  // The mean over its flight, in the frame of the colloid.
+  Vector<D> relative_velocity(const Flight<D> &flight, const Colloid<D> &colloid) const
   {
-    double approach = 0, speed = 0;
-    for (int a = 0; a < D; ++a) {
-      const double v = flight.v[a] - 0.5 * flight.flown * field_[a] - colloid.v[a];
-      approach += v * inside[a];
-      speed += v * v;
-    }
-    const double depth = size * size - square<D>(inside);
-    const double ago = (approach + std::sqrt(approach * approach + speed * depth)) / speed;
-    const bool came = ago <= flight.flown * (1 + 1e-9);    // rounding, of one that comes back at once
-    return came ? std::min(ago, flight.flown) : -1;
+    Vector<D> v;
+    for (int a = 0; a < D; ++a)
+      v[a] = flight.v[a] - 0.5 * flight.flown * field_[a] - colloid.v[a];
+    return v;
+  }
+
+  // How long ago a particle came in, on a straight way in the frame of the colloid; -1 for one that
+  // did not, and more than it has flown for one that ends inside and was there all the time.
+  double entry(const Flight<D> &flight, const Colloid<D> &colloid, const Vector<D> &from,
+               double inside) const
+  {
+    const auto v = relative_velocity(flight, colloid);
+    double approach = 0;
+    for (int a = 0; a < D; ++a) approach += v[a] * from[a];
+    const double speed = square<D>(v);
+    const double size = radius(colloid);
+    const double root = approach * approach + speed * inside * size * size;
+    if (!(root > 0)) return -1;
+    const double ago = (approach + std::sqrt(root)) / speed;
+    if (!(ago >= 0)) return -1;
+    if (ago <= flight.flown * (1 + 1e-9)) return std::min(ago, flight.flown);    // rounding
+    return inside > 0 ? 2 * flight.flown : -1;
   }
 
   // The velocity that a particle leaves with, in the frame of the surface (13, 14): along the normal
@@ -317,12 +340,10 @@ template <int D> class ReflectionCoupling : public Coupling<D> {
       throw TooManyBounces::fault(static_cast<std::uint32_t>(flight.id));
   }
 
-  [[noreturn]] void throw_moved_too_far(int cell) const
+  [[noreturn]] void throw_moved_too_far(const Colloid<D> &colloid) const
   {
-    std::int64_t id = 0;
-    cells_.each(cell, [&](int c) { id = static_cast<std::int64_t>(colloids_[c].id); });
-    throw Fault("colloid " + std::to_string(id) + " moved further since the last collision than " +
-                std::to_string(allowance_) +
+    throw Fault("colloid " + std::to_string(static_cast<std::int64_t>(colloid.id)) +
+                " moved further since the last collision than " + std::to_string(allowance_) +
                 ", which the choice of fluid to reflect allows: a force on it is too strong");
   }
 
@@ -333,7 +354,8 @@ template <int D> class ReflectionCoupling : public Coupling<D> {
   const Walls<D> *walls_;
   std::vector<Colloid<D>> colloids_;
   double allowance_ = 0;           // how far they may move in the interval
-  ColloidCells<D> cells_, held_;    // of the colloids now, and of where they could come to
+  double way_ = 0;                 // how far behind a colloid its contacts are looked for
+  ColloidCells<D> cells_;
   CounterRandom random_{0, 0};
   std::vector<double> sums_;
   std::vector<Surface> surfaces_;

@@ -133,7 +133,7 @@ template <int D> class Solver {
     auto *coupling = method_.coupling.get();
     if (coupling) coupling->begin(grid_, colloids, colloid_speed);
     draw_shift(collisions_);
-    near_colloids_ = coupling && coupling->after_flight() ? coupling->hold(grid_).data() : nullptr;
+    slowest_ = coupling && coupling->after_flight() ? coupling->hold(grid_).data() : nullptr;
     std::fill(sums_.of.begin(), sums_.of.end(), CellSum<D>{});
     strays_.clear();
     held_.clear();
@@ -147,7 +147,7 @@ template <int D> class Solver {
       if (coupling)
         for (auto k = before; k < coupling->taken().size(); ++k)
           fluid_.cell[coupling->taken()[k]] = TAKEN;
-      if (near_colloids_) hold(begin, end);
+      if (slowest_) hold(begin, end);
       sum(begin, end);
     }
     turning_ = false;
@@ -163,10 +163,10 @@ template <int D> class Solver {
         sum(i, i + 1);
       }
     }
-    if (near_colloids_) reflect(colloids);
+    if (slowest_) reflect(colloids);
     std::sort(strays_.rbegin(), strays_.rend());    // removal moves the last one: begin there
     for (int i : strays_) {
-      if (!near_colloids_) travelling_.push_back(fluid_.particle(i));
+      if (!slowest_) travelling_.push_back(fluid_.particle(i));
       fluid_.remove(i);
     }
     migrate();
@@ -304,7 +304,7 @@ template <int D> class Solver {
           strays_.push_back(i);
           continue;
         }
-        if (near_colloids_ && near_colloids_[cell] >= 0) {
+        if (slowest_ && square_speed(i) >= slowest_[cell]) {
           held_.push_back(i);
           continue;
         }
@@ -313,7 +313,14 @@ template <int D> class Solver {
     }
   }
 
-  // Keep back what has come to cells near colloids.
+  double square_speed(int i) const
+  {
+    double sum = 0;
+    for (int a = 0; a < D; ++a) sum += fluid_.v[a][i] * fluid_.v[a][i];
+    return sum;
+  }
+
+  // Keep back what may have met colloids.
   void hold(int begin, int end)
   {
     listed_.resize(end - begin);
@@ -321,7 +328,7 @@ template <int D> class Solver {
     for (int i = begin; i < end; ++i) {
       const int cell = fluid_.cell[i];
       listed_[listed] = i;
-      listed += cell >= 0 && near_colloids_[cell] >= 0;
+      listed += (cell >= 0) & (square_speed(i) >= slowest_[cell >= 0 ? cell : 0]);
     }
     for (int k = 0; k < listed; ++k) {
       held_.push_back(listed_[k]);
@@ -329,8 +336,8 @@ template <int D> class Solver {
     }
   }
 
-  // Bring what was held outside of the colloids, and into the sums; what has come to the cells of
-  // other processes goes there, and may be reflected there.
+  // Reflect what was held, and bring it into the sums; what has come to the cells of other processes
+  // goes there, and may be reflected there.
   void reflect(const std::vector<Colloid<D>> &colloids)
   {
     auto &coupling = *method_.coupling;
@@ -372,7 +379,7 @@ template <int D> class Solver {
     landed_.clear();
   }
 
-  // Reflect a particle until it is outside of all colloids; its cell, or -1 for another process's.
+  // Reflect a particle until it meets no colloid; its cell, or -1 for another process's.
   int bounce(Flight<D> &flight)
   {
     int cell = locate(flight);
@@ -478,8 +485,8 @@ template <int D> class Solver {
   Array<Turn<D>> turns_;       // of the last collision
   bool turning_ = false;             // whether they are still to be applied
   std::vector<int> strays_;          // indices of particles in no cell of this process
-  const int *near_colloids_ = nullptr;    // of each cell, not negative where colloids may reflect
-  std::vector<int> held_, listed_;   // particles that may be inside colloids
+  const double *slowest_ = nullptr;  // square speed from which colloids may reflect, of each cell
+  std::vector<int> held_, listed_;   // particles that may have met colloids
   std::vector<Particle<D>> travelling_;
   std::vector<Flight<D>> landed_;
   TileOrder<D> tiles_;

@@ -4,10 +4,11 @@ IV).
 Disks in two dimensions. Arrays hold the components first: fluid (d, N), colloids (d, N_c), spins as
 in `rotation`.
 
-A particle that has ended inside a colloid is put at its surface: at the nearest point, half a step
-ago; or at the point where it came in, when it did. It leaves with a velocity of (13) and (14) in
-the frame of the surface, flies for the rest of the time, and is looked at again, up to N_max
-contacts.
+Either a particle that has ended inside a colloid is put at the `nearest` point of the surface,
+half a step ago. Or a particle that has met a colloid on its way is put at the point of `entry`,
+when it met it: also if it has ended outside, as those who graze a colloid do. It leaves with a
+velocity of (13) and (14) in the frame of the surface, flies for the rest of the time, and is
+looked at again, up to N_max contacts.
 
 The surface has the velocity V + share (V' - V), V' being that of the colloid after the contacts of
 the interval: see `surfaces`.
@@ -52,7 +53,7 @@ class Spheres:
 
 @dataclass(frozen=True)
 class Contacts:
-    """Fluid particles that are inside colloids, and how they came there.
+    """Fluid particles that have met colloids, and how.
 
     Attributes:
         particles, colloids: their numbers (n,).
@@ -78,10 +79,10 @@ def find_contacts(
     field: Array,
     boundaries: Boundaries,
 ) -> Contacts:
-    """The contact of each particle with the colloid that it is deepest in.
+    """The first contact of each particle on its way; `nearest`: with the colloid it is deepest in.
 
-    The way back in is straight in the frame of the colloid. A particle that has been inside for all
-    of its flight is put at the nearest point, half of its flight ago.
+    The way is straight in the frame of the colloid. A particle that has been inside for all of its
+    flight is put at the nearest point, half of its flight ago.
 
     Args:
         positions, velocities: of the fluid (d, N).
@@ -96,22 +97,28 @@ def find_contacts(
     for axis, size in enumerate(boundaries.box):
         if boundaries.periodic[axis]:
             separation[axis] -= size * np.rint(separation[axis] / size)
-    depth = (separation**2).sum(axis=0) / spheres.radii**2
-    colloids = depth.argmin(axis=1)
-    particles = np.flatnonzero(depth[np.arange(len(depth)), colloids] < 1)
+    inside = 1 - (separation**2).sum(axis=0) / spheres.radii**2
+    mean = (velocities - 0.5 * flown * field)[:, :, None] - spheres.velocities[:, None, :]
+    ago = inside
+    if placement == "entry":
+        approach, speed = (mean * separation).sum(axis=0), (mean**2).sum(axis=0)
+        root = approach**2 + speed * inside * spheres.radii**2
+        ago = (approach + np.sqrt(np.maximum(root, 0.0))) / np.where(speed > 0, speed, 1.0)
+        ago[(root <= 0) | (ago < 0)] = -1.0
+        late = ago > flown[:, None] * (1 + 1e-9)
+        ago = np.where(late, np.where(inside > 0, np.inf, -1.0), np.minimum(ago, flown[:, None]))
+    colloids = ago.argmax(axis=1)
+    particles = np.flatnonzero(ago.max(axis=1) > (-1 if placement == "entry" else 0))
     colloids = colloids[particles]
-    inside = separation[:, particles, colloids]
+    at = (slice(None), particles, colloids)
+    inside, mean, left = separation[at], mean[at], ago[particles, colloids]
     radius, came = spheres.radii[colloids], velocities[:, particles].copy()
-    flown = flown[particles]
-
-    mean = came - 0.5 * flown * field - spheres.velocities[:, colloids]
-    approach, speed = (mean * inside).sum(axis=0), (mean**2).sum(axis=0)
-    ago = approach + np.sqrt(approach**2 + speed * (radius**2 - (inside**2).sum(axis=0)))
-    ago /= np.where(speed > 0, speed, 1.0)
-    entered = (ago <= flown * (1 + 1e-9)) & (speed > 0) & (placement == "entry")
-    left = np.where(entered, np.minimum(ago, flown), 0.0)
-    inside -= left * mean
-    left[~entered] = 0.5 * (flown[~entered] if placement == "entry" else interval)
+    if placement == "entry":
+        entered = np.isfinite(left)
+        left[~entered] = 0.5 * flown[particles[~entered]]
+        inside -= np.where(entered, left, 0.0) * mean
+    else:
+        left = np.full(left.shape, 0.5 * interval)
     came -= left * field
     arms = inside * (radius / np.sqrt((inside**2).sum(axis=0)))
     return Contacts(particles, colloids, arms, came, left)
