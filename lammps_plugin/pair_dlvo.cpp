@@ -136,44 +136,51 @@ double PairDLVO::init_one(int i, int j)
   if (!setflag[i][j]) error->all(FLERR, "pair_style dlvo: no pair_coeff for types {} {}", i, j);
   auto &spheres = of(i, j);
   spheres.shift = 0;
-  double force;
-  if (offset_flag) spheres.shift = spheres.energy(spheres.cutoff, force);
+  if (offset_flag) spheres.shift = spheres.energy(spheres.cutoff);
   of(j, i) = spheres;
   return std::max(spheres.cutoff, spheres.diameter + spheres.farthest);
 }
 
-// (1) and (2), and the force.
-double PairDLVO::Spheres::dlvo(double r, double &force) const
+// (1); so far out that it is no more than a rounding of the strength, nothing.
+double PairDLVO::Spheres::coulomb(double r) const
 {
-  const double d2 = diameter * diameter, r2 = r * r;
-  const double coulomb = charge * d2 / r * std::exp(-kappa * (r - diameter));
-  force = coulomb * (1 / r + kappa);
-  if (hamaker == 0) return coulomb;
-  const double gap = r2 - d2;
-  const double ratio = d2 / r2;
-  // d2/gap + ratio + 2 ln(1 - ratio); its derivative in closed form
-  const double sum = d2 / gap + ratio + 2 * std::log1p(-ratio);
-  force -= hamaker / 12 * 2 * d2 * d2 * d2 / (r * r2 * gap * gap);
-  return coulomb - hamaker / 12 * sum;
+  const double exponent = kappa * (r - diameter);
+  return exponent < 40 ? charge * diameter * diameter / r * std::exp(-exponent) : 0.0;
+}
+
+// (1) and (2).
+double PairDLVO::Spheres::dlvo_energy(double r) const
+{
+  if (hamaker == 0) return coulomb(r);
+  const double ratio = diameter * diameter / (r * r);
+  return coulomb(r) - hamaker / 12 * (ratio / (1 - ratio) + ratio + 2 * std::log1p(-ratio));
+}
+
+double PairDLVO::Spheres::dlvo_force(double r) const
+{
+  const double d2 = diameter * diameter, gap = r * r - d2;
+  const double repulsion = charge > 0 ? coulomb(r) * (1 / r + kappa) : 0.0;
+  return repulsion - hamaker / 6 * d2 * d2 * d2 / (r * r * r * gap * gap);
 }
 
 // With the parabola -depth + stiffness (r - d)^2 / 2 from contact to the joint, and (3) below contact.
-double PairDLVO::Spheres::energy(double r, double &force) const
+double PairDLVO::Spheres::energy(double r) const
 {
-  double energy;
-  if (hamaker > 0 && r < joint) {
-    const double gap = std::max(r - diameter, 0.0);
-    energy = -depth + 0.5 * stiffness * gap * gap;
-    force = -stiffness * gap;
-  } else {
-    energy = dlvo(r, force);
-  }
-  if (r < diameter && hertz > 0) {
-    const double overlap = diameter - r, root = std::sqrt(overlap);
-    energy += hertz * overlap * overlap * root;
-    force += 2.5 * hertz * overlap * root;
-  }
-  return energy - shift;
+  const double gap = std::max(r - diameter, 0.0), overlap = std::max(diameter - r, 0.0);
+  const double outer = hamaker > 0 && r < joint ? -depth + 0.5 * stiffness * gap * gap
+                                                : dlvo_energy(r);
+  return outer + hertz * overlap * overlap * std::sqrt(overlap) - shift;
+}
+
+double PairDLVO::Spheres::force(double r) const
+{
+  double force;
+  if (hamaker > 0)
+    force = r < joint ? -stiffness * std::max(r - diameter, 0.0) : dlvo_force(r);
+  else
+    force = coulomb(r) * (1 / r + kappa);
+  if (r < diameter) force += 2.5 * hertz * (diameter - r) * std::sqrt(diameter - r);
+  return force;
 }
 
 // The innermost gap h with V(h) + depth = h V'(h) / 2: there a parabola from the depth at contact has
@@ -181,9 +188,8 @@ double PairDLVO::Spheres::energy(double r, double &force) const
 void PairDLVO::Spheres::join()
 {
   const auto excess = [&](double gap) {
-    double force;
-    const double energy = dlvo(diameter + gap, force);
-    return energy + depth + 0.5 * gap * force;
+    const double r = diameter + gap;
+    return dlvo_energy(r) + depth + 0.5 * gap * dlvo_force(r);
   };
   double inner = 1e-8 * diameter, outer = inner;
   while (excess(outer) < 0) {
@@ -194,10 +200,8 @@ void PairDLVO::Spheres::join()
     const double middle = 0.5 * (inner + outer);
     (excess(middle) < 0 ? inner : outer) = middle;
   }
-  double force;
   joint = diameter + outer;
-  dlvo(joint, force);
-  stiffness = -force / outer;
+  stiffness = -dlvo_force(joint) / outer;
 }
 
 // Of the relative velocity along the line of centres: lubrication (4), largest in contact and zero
@@ -236,11 +240,10 @@ void PairDLVO::compute(int eflag, int vflag)
       const int itype = type[i], jtype = type[j];
       if (r2 >= cutsq[itype][jtype]) continue;
       const auto &spheres = of(itype, jtype);
-      const double r = std::sqrt(r2);
-      for (double &component : e) component /= r;
+      const double r = std::sqrt(r2), inverse = 1 / r;
+      for (double &component : e) component *= inverse;
 
-      double energy = 0, along = 0;
-      if (r < spheres.cutoff) energy = spheres.energy(r, along);
+      double along = r < spheres.cutoff ? spheres.force(r) : 0;
       Vector<3> pull{};
       const double friction = dissipates_ ? spheres.normal_friction(r) : 0;
       const bool rubbing = spheres.friction > 0 && r < spheres.diameter;
@@ -281,9 +284,10 @@ void PairDLVO::compute(int eflag, int vflag)
         f[i][a] += pull[a];
         if (newton || j < nlocal) f[j][a] -= pull[a];
       }
-      if (evflag)
-        ev_tally_xyz(i, j, nlocal, newton, energy, 0.0, pull[0], pull[1], pull[2],
-                     r * e[0], r * e[1], r * e[2]);
+      if (!evflag) continue;
+      const double energy = eflag && r < spheres.cutoff ? spheres.energy(r) : 0;
+      ev_tally_xyz(i, j, nlocal, newton, energy, 0.0, pull[0], pull[1], pull[2],
+                   r * e[0], r * e[1], r * e[2]);
     }
   }
   if (vflag_fdotr) virial_fdotr_compute();
@@ -293,8 +297,7 @@ double PairDLVO::single(int, int, int itype, int jtype, double rsq, double, doub
 {
   const auto &spheres = of(itype, jtype);
   const double r = std::sqrt(rsq);
-  double force = 0, energy = 0;
-  if (r < spheres.cutoff) energy = spheres.energy(r, force);
-  fforce = force / r;
-  return energy;
+  if (r >= spheres.cutoff) return fforce = 0;
+  fforce = spheres.force(r) / r;
+  return spheres.energy(r);
 }

@@ -36,8 +36,11 @@ class PairDLVO : public Pair {
     double joint = 0, stiffness = 0;    // where the parabola ends, derived
     double shift = 0;                   // energy at the cutoff, with pair_modify shift yes
 
-    double energy(double r, double &force) const;
-    double dlvo(double r, double &force) const;
+    double energy(double r) const;
+    double force(double r) const;
+    double coulomb(double r) const;
+    double dlvo_energy(double r) const;
+    double dlvo_force(double r) const;
     void join();
     double normal_friction(double r) const;
   };

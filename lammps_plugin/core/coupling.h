@@ -70,9 +70,10 @@ template <int D> class Coupling {
   virtual void give_back(Fluid<D> &) {}
 
   // After the flight. The grid of the next collision; for each of its cells, the square of the speed
-  // from which particles are held back.
+  // from which particles are candidates; and which of the candidates are held back.
   virtual bool after_flight() const { return false; }
   virtual const std::vector<double> &hold(const Grid<D> &) { return slowest_; }
+  virtual bool holds(const Fluid<D> &, int /*index*/, int /*cell*/) const { return false; }
 
   // Colloids as they are now; then all particles that were held, with their cell; then, when all
   // processes know of all of them, again for each, until none touches a colloid any more.

@@ -56,6 +56,7 @@ template <int D> class ReflectionCoupling : public Coupling<D> {
   {
     colloids_ = colloids;
     allowance_ = speed * interval_;
+    find_radii();
   }
 
   bool after_flight() const override { return true; }
@@ -64,10 +65,11 @@ template <int D> class ReflectionCoupling : public Coupling<D> {
   const std::vector<double> &hold(const Grid<D> &grid) override
   {
     cells_.begin(grid);
+    for (int a = 0; a < D; ++a) per_length_[a] = 1 / grid.box[a];
     slowest_.assign(grid.cells(), HUGE_VAL);
     const double gain = 0.5 * std::sqrt(square<D>(field_)) * interval_;
     for (std::size_t c = 0; c < colloids_.size(); ++c) {
-      const double touching = radius(colloids_[c]) + allowance_;
+      const double touching = radius_[c] + allowance_;
       cells_.enter(static_cast<int>(c), colloids_[c].x, touching + way_, [&](int cell, double square) {
         const double way = std::max(std::sqrt(square) - touching, 0.0);
         const double speed = std::max(way / interval_ - gain, 0.0);
@@ -77,17 +79,44 @@ template <int D> class ReflectionCoupling : public Coupling<D> {
     return slowest_;
   }
 
-  // The host may show other images now.
+  // Whether a particle may come to a colloid, which moves no further than its allowance.
+  bool holds(const Fluid<D> &fluid, int i, int cell) const override
+  {
+    const auto particle = fluid.particle(i);
+    Vector<D> way;
+    double square_way = 0;
+    for (int a = 0; a < D; ++a) {
+      way[a] = interval_ * (particle.v[a] - 0.5 * interval_ * field_[a]);
+      square_way += way[a] * way[a];
+    }
+    bool near = false;
+    cells_.each(cell, [&](int c) {
+      const auto from = separation(particle.x, colloids_[c]);
+      double back = 0;
+      for (int a = 0; a < D; ++a) back += from[a] * way[a];
+      double part = square_way > 0 ? std::clamp(back / square_way, 0.0, 1.0) : 0.0;
+      if (placement_ == Placement::Nearest) part = 0;
+      double closest = 0;
+      for (int a = 0; a < D; ++a) {
+        const double distance = from[a] - part * way[a];
+        closest += distance * distance;
+      }
+      const double touching = radius_[c] * (1 + 1e-9) + allowance_;
+      near |= closest < touching * touching;
+    });
+    return near;
+  }
+
+  // The host may show other images now, after it moved colloids between processes.
   void meet(const std::vector<Colloid<D>> &colloids, const CounterRandom &random) override
   {
+    bool same = colloids.size() == colloids_.size();
+    for (std::size_t c = 0; same && c < colloids.size(); ++c) {
+      const auto from = separation(colloids[c].x, colloids_[c], false);
+      same = colloids[c].id == colloids_[c].id && square<D>(from) <= allowance_ * allowance_;
+    }
     colloids_ = colloids;
-    cells_.begin(Grid<D>(cells_.grid()));
-    for (std::size_t c = 0; c < colloids_.size(); ++c)
-      cells_.enter(static_cast<int>(c), colloids_[c].x, radius(colloids_[c]) + way_,
-                   [&](int cell, double square) {
-                     if (square < radius(colloids_[c]) * radius(colloids_[c]) && slowest_[cell] > 0)
-                       throw_moved_too_far(colloids_[c]);
-                   });
+    if (!same) enter_anew();
     random_ = random;
     sums_.assign(WIDTH * colloids.size(), 0.0);
     impulses_.assign(colloids.size(), {});
@@ -163,7 +192,35 @@ template <int D> class ReflectionCoupling : public Coupling<D> {
     Spin<D> spin;
   };
 
-  double radius(const Colloid<D> &colloid) const { return radii_.at(colloid.type); }
+  void find_radii()
+  {
+    radius_.clear();
+    for (const auto &colloid : colloids_) radius_.push_back(radii_.at(colloid.type));
+  }
+
+  // Enter colloids at their cells as they are now; particles must have been held where they touch.
+  void enter_anew()
+  {
+    find_radii();
+    cells_.begin(Grid<D>(cells_.grid()));
+    for (std::size_t c = 0; c < colloids_.size(); ++c)
+      cells_.enter(static_cast<int>(c), colloids_[c].x, radius_[c] + allowance_ + way_,
+                   [&](int cell, double square) {
+                     if (square < radius_[c] * radius_[c] && slowest_[cell] > 0)
+                       throw_moved_too_far(colloids_[c]);
+                   });
+  }
+
+  Vector<D> separation(const Vector<D> &x, const Colloid<D> &colloid, bool nearest_image = true) const
+  {
+    Vector<D> from;
+    for (int a = 0; a < D; ++a) {
+      from[a] = x[a] - colloid.x[a];
+      if (nearest_image && cells_.grid().periodic[a])
+        from[a] -= cells_.grid().box[a] * std::rint(from[a] * per_length_[a]);
+    }
+    return from;
+  }
 
   // The contact that comes first on a particle's way, or, where those who end inside are put at the
   // nearest point, with the colloid that it is deepest in; perhaps none.
@@ -174,18 +231,14 @@ template <int D> class ReflectionCoupling : public Coupling<D> {
     double most = placement_ == Placement::Entry ? -1 : 0;
     cells_.each(cell, [&](int c) {
       const auto &colloid = colloids_[c];
-      Vector<D> separation;
-      for (int a = 0; a < D; ++a) {
-        const double size = cells_.grid().box[a];
-        separation[a] = flight.x[a] - colloid.x[a];
-        if (cells_.grid().periodic[a]) separation[a] -= size * std::rint(separation[a] / size);
-      }
-      const double inside = 1 - square<D>(separation) / (radius(colloid) * radius(colloid));
-      const double ago = placement_ == Placement::Entry ? entry(flight, colloid, separation, inside)
-                                                        : inside;
+      const auto apart = separation(flight.x, colloid);
+      const double inside = 1 - square<D>(apart) / (radius_[c] * radius_[c]);
+      const double ago = placement_ == Placement::Entry
+          ? entry(flight, colloid, apart, inside, radius_[c])
+          : inside;
       if (!(ago > most)) return;
       most = ago;
-      from = separation;
+      from = apart;
       contact.colloid = c;
     });
     if (contact.colloid < 0) return contact;
@@ -200,7 +253,7 @@ template <int D> class ReflectionCoupling : public Coupling<D> {
       const auto way = relative_velocity(flight, colloid);
       for (int a = 0; a < D; ++a) from[a] -= most * way[a];
     }
-    const double scale = radius(colloid) / std::sqrt(square<D>(from));
+    const double scale = radius_[contact.colloid] / std::sqrt(square<D>(from));
     for (int a = 0; a < D; ++a) {
       contact.arm[a] = scale * from[a];
       contact.v[a] = flight.v[a] - contact.left * field_[a];
@@ -220,13 +273,12 @@ template <int D> class ReflectionCoupling : public Coupling<D> {
   // How long ago a particle came in, on a straight way in the frame of the colloid; -1 for one that
   // did not, and more than it has flown for one that ends inside and was there all the time.
   double entry(const Flight<D> &flight, const Colloid<D> &colloid, const Vector<D> &from,
-               double inside) const
+               double inside, double size) const
   {
     const auto v = relative_velocity(flight, colloid);
     double approach = 0;
     for (int a = 0; a < D; ++a) approach += v[a] * from[a];
     const double speed = square<D>(v);
-    const double size = radius(colloid);
     const double root = approach * approach + speed * inside * size * size;
     if (!(root > 0)) return -1;
     const double ago = (approach + std::sqrt(root)) / speed;
@@ -353,6 +405,8 @@ template <int D> class ReflectionCoupling : public Coupling<D> {
   Vector<D> field_;
   const Walls<D> *walls_;
   std::vector<Colloid<D>> colloids_;
+  std::vector<double> radius_;     // of each
+  Vector<D> per_length_{};         // of the box
   double allowance_ = 0;           // how far they may move in the interval
   double way_ = 0;                 // how far behind a colloid its contacts are looked for
   ColloidCells<D> cells_;

@@ -304,7 +304,7 @@ template <int D> class Solver {
           strays_.push_back(i);
           continue;
         }
-        if (slowest_ && square_speed(i) >= slowest_[cell]) {
+        if (slowest_ && method_.coupling->holds(fluid_, i, cell)) {
           held_.push_back(i);
           continue;
         }
@@ -331,8 +331,10 @@ template <int D> class Solver {
       listed += (cell >= 0) & (square_speed(i) >= slowest_[cell >= 0 ? cell : 0]);
     }
     for (int k = 0; k < listed; ++k) {
-      held_.push_back(listed_[k]);
-      fluid_.cell[listed_[k]] = TAKEN;
+      const int i = listed_[k];
+      if (!method_.coupling->holds(fluid_, i, fluid_.cell[i])) continue;
+      held_.push_back(i);
+      fluid_.cell[i] = TAKEN;
     }
   }
 
