@@ -2,6 +2,7 @@
 
 #include "fix_mpc.h"
 #include "fix_wall_lj115.h"
+#include "pair_dlvo.h"
 
 #include "domain.h"
 #include "lammps.h"
@@ -21,7 +22,7 @@ struct Plugin {
   const char *name;
   const char *info;
   const char *author;
-  Fix *(*creator)(LAMMPS *, int, char **);
+  void *creator;    // of a fix from (LAMMPS *, int, char **), of a pair from (LAMMPS *)
   void *handle;
 };
 using Register = void (*)(Plugin *, void *);
@@ -37,6 +38,11 @@ Fix *create_wall_lj115(LAMMPS *lammps, int narg, char **arg)
   return new FixWallLJ115(lammps, narg, arg);
 }
 
+Pair *create_dlvo(LAMMPS *lammps)
+{
+  return new PairDLVO(lammps);
+}
+
 }    // namespace
 
 extern "C" __attribute__((visibility("default"))) void lammpsplugin_init(void *lammps, void *handle,
@@ -47,17 +53,22 @@ extern "C" __attribute__((visibility("default"))) void lammpsplugin_init(void *l
   if (version != NARROWS_LAMMPS_VERSION) {
     utils::logmesg(static_cast<LAMMPS *>(lammps),
                    "narrows: its plugin was built for LAMMPS " NARROWS_LAMMPS_VERSION
-                   ", this is LAMMPS " + version + ": fix mpc and fix wall/lj115 are left out\n");
+                   ", this is LAMMPS " + version + ": fix mpc, fix wall/lj115 and pair_style dlvo are left out\n");
     return;
   }
   Plugin plugin{NARROWS_LAMMPS_VERSION, "fix", nullptr, nullptr, "narrows", nullptr, handle};
   const auto add = reinterpret_cast<Register>(regfunc);
   plugin.name = "mpc";
   plugin.info = "multi-particle collision fluid";
-  plugin.creator = create_mpc;
+  plugin.creator = reinterpret_cast<void *>(create_mpc);
   add(&plugin, lammps);
   plugin.name = "wall/lj115";
   plugin.info = "12-6 potential of a line of wall particles";
-  plugin.creator = create_wall_lj115;
+  plugin.creator = reinterpret_cast<void *>(create_wall_lj115);
+  add(&plugin, lammps);
+  plugin.style = "pair";
+  plugin.name = "dlvo";
+  plugin.info = "charged spheres with contact and lubrication";
+  plugin.creator = reinterpret_cast<void *>(create_dlvo);
   add(&plugin, lammps);
 }
