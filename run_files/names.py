@@ -12,10 +12,10 @@ def checkpoint_name(step: int, suffix: str) -> str:
     return f"checkpoint.{step}.{suffix}"
 
 
-def is_checkpoint(name: str, step: int) -> bool:
-    """Whether this is the name of a checkpoint of that step."""
+def is_checkpoint(name: str, step: int, suffix: str | None = None) -> bool:
+    """Whether this is the name of a checkpoint of that step, and of that suffix."""
     match = CHECKPOINT.fullmatch(name)
-    return match is not None and name == checkpoint_name(step, match[2])
+    return match is not None and name == checkpoint_name(step, suffix or match[2])
 
 
 def is_run_name(name: str) -> bool:

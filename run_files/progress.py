@@ -31,7 +31,10 @@ class Progress(Part):
 
     @model_validator(mode="after")
     def _is_ours(self) -> Self:
-        if self.checkpoint is not None and not is_checkpoint(self.checkpoint, self.step):
+        if self.checkpoint is None:
+            if self.step > 0:
+                raise ValueError(f"checkpoint: none of step {self.step}")
+        elif not is_checkpoint(self.checkpoint, self.step):
             raise ValueError(f"checkpoint {self.checkpoint!r}: not that of step {self.step}")
         return self
 

@@ -1,6 +1,7 @@
 """LAMMPS, in this process, running the deck of a run directory."""
 
 import contextlib
+import ctypes
 from collections.abc import Iterator
 from pathlib import Path
 from typing import Any
@@ -9,6 +10,7 @@ from lammps_inputs import Scene
 from lammps_inputs.deck import script
 from lammps_inputs.engines.engine import Start
 from lammps_inputs.engines.lammps import particle_group
+from run_files.cutting import cut_output
 from run_files.progress import Progress
 from srd_driver.errors import RunError
 from srd_driver.session import Array
@@ -52,6 +54,10 @@ class LammpsSession:
         with self._errors():
             self._lammps.command("log log.lammps append")
             self._lammps.commands_list(setup)
+        if progress.checkpoint and comm.rank == 0:
+            ctypes.CDLL(None).fflush(None)  # titles that LAMMPS wrote again, to be cut off
+            for output in scene.system.outputs:
+                cut_output(directory / output.file, output.kind, progress.step)
 
     @property
     def colloid_positions(self) -> Array:
