@@ -2,9 +2,14 @@
 
 import re
 from pathlib import Path
+from typing import Annotated
+
+from pydantic import Field
 
 CHECKPOINT = re.compile(r"checkpoint\.(\d{1,19})\.(restart|npz)")
 LONGEST_NAME = 255  # bytes, of most file systems
+
+FileName = Annotated[str, Field(pattern=r"^[A-Za-z0-9][A-Za-z0-9_.-]*$", max_length=100)]
 
 
 def checkpoint_name(step: int, suffix: str) -> str:

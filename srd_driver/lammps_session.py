@@ -13,7 +13,10 @@ from lammps_inputs.engines.lammps import particle_group
 from run_files.cutting import cut_output
 from run_files.progress import Progress
 from srd_driver.errors import RunError
+from srd_driver.parallel import agree
 from srd_driver.session import Array
+
+LAST_WORD = b"LammpS RestartT\0"  # of a restart file
 
 
 class LammpsSession:
@@ -82,6 +85,7 @@ class LammpsSession:
             with self._errors():
                 self._lammps.command(f"write_restart {file}")
             self._set_up = False  # write_restart moves atoms between processes
+        agree(self._comm, lambda: _require_whole(self._directory / file))
 
     def close(self) -> None:
         self._lammps.close()
@@ -112,3 +116,11 @@ class LammpsSession:
 
     def _message(self, error: Exception) -> str:
         return f"LAMMPS: {str(error).strip()} (log: {self._directory / 'log.lammps'})"
+
+
+def _require_whole(file: Path) -> None:
+    """LAMMPS does not look whether the disk took what it wrote; its last word tells."""
+    with file.open("rb") as content:
+        content.seek(max(0, file.stat().st_size - len(LAST_WORD)))
+        if content.read() != LAST_WORD:
+            raise RunError(f"{file.name} was not written to its end")

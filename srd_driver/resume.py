@@ -13,11 +13,19 @@ from typing import Any, TextIO
 from lammps_inputs import Scene
 from lammps_inputs.deck import check_engine, has_deck, script, write_deck
 from lammps_inputs.manifest import manifest
+from run_files.checksums import Checksum
 from run_files.cutting import cut_output
+from run_files.manifest import CHANGEABLE, SCENE, read_manifest
 from run_files.manifest import NAME as MANIFEST
-from run_files.manifest import read_manifest
 from run_files.names import is_checkpoint
-from run_files.progress import FAILURE, Progress, is_begun, read_progress, write_progress
+from run_files.progress import (
+    FAILURE,
+    FORMAT,
+    Progress,
+    is_begun,
+    read_progress,
+    write_progress,
+)
 from run_files.progress import NAME as PROGRESS
 from run_files.reading import read_toml, refuse
 from run_files.writing import draft_of, replace_text
@@ -25,8 +33,6 @@ from srd_driver import run_lock
 from srd_driver.engines import checkpoint_suffix
 from srd_driver.errors import RunError
 
-CHANGEABLE = {"duration"}  # a run may be resumed to last longer
-SCENE = "scene.toml"
 MAKING = ".making"  # a folder for what the engine makes before a run begins
 
 
@@ -87,7 +93,7 @@ def create(scene: Scene, engine: str, directory: Path, ranks: int) -> Progress:
         write_scene(scene, engine, directory, ranks)
         for name in made:
             os.replace(making / name, directory / name)
-        return write_progress(directory, Progress())
+        return write_progress(directory, Progress(format=FORMAT, run=identity(scene, engine)))
     except OSError as error:
         raise RunError(f"cannot write {directory}: {error.strerror or error}") from None
     finally:
@@ -121,7 +127,12 @@ def reopen(scene: Scene, engine: str, directory: Path, ranks: int) -> Progress:
             refuse(directory / PROGRESS, f"checkpoint {progress.checkpoint}: not one of {engine}")
         if not (directory / progress.checkpoint).is_file():
             raise RunError(f"{directory}: its checkpoint {progress.checkpoint} is missing")
+    if progress.run not in (None, identity(scene, engine)):
+        refuse(directory / PROGRESS, "of another run: its checkpoint is not taken for this one's")
     if progress.step < scene.system.clock.total_steps:
+        for file in progress.checksums:
+            progress.require(directory, file)
+        progress = progress.model_copy(update={"finished": False})  # it may be made longer
         try:
             (directory / FAILURE).unlink(missing_ok=True)
             write_progress(directory, progress)  # drops a checkpoint that a kill left half written
@@ -183,6 +194,13 @@ def _last_label(path: Path) -> int:
         rows = file.read().split(b"\n")[1:-1]  # what lies between two line ends is whole
     labels = [row.split()[0] for row in rows if row[:1].isdigit()]
     return int(labels[-1]) if labels and labels[-1].isdigit() else 0
+
+
+def identity(scene: Scene, engine: str) -> str:
+    """A digest of all that makes a run the run it is: scene, seed and engine."""
+    fields = scene.model_dump(mode="json", exclude=CHANGEABLE)
+    content = {"scene": scene.name, "engine": engine, "fields": fields}
+    return Checksum.of_text(json.dumps(content, sort_keys=True)).digest
 
 
 def refuse_another_scene(scene: Scene, engine: str, directory: Path) -> None:

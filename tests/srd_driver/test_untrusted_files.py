@@ -51,7 +51,7 @@ def contents(directory: Path) -> dict[str, bytes]:
         ({"checkpoint": "../gotcha.restart"}, "not that of step 300"),
         ({"checkpoint": "checkpoint.300.restart remap"}, "not that of step 300"),
         ({"checkpoint": "checkpoint.450.restart"}, "not that of step 300"),
-        ({"checkpoint": "checkpoint.300.npz"}, "not one of srd"),
+        ({"checkpoint": "checkpoint.300.npz", "format": 1}, "not one of srd"),
         ({"checkpoint": None}, "checkpoint: none of step 300"),
         ({"checkpoint": 300}, "checkpoint: should be a valid string"),
         ({"step": 150}, "not that of step 150"),
