@@ -4,7 +4,9 @@
 #include "comm.h"
 #include "domain.h"
 #include "error.h"
+#include "force.h"
 #include "neighbor.h"
+#include "update.h"
 
 #include <algorithm>
 #include <array>
@@ -105,6 +107,14 @@ template <int D> void MpcColloids<D>::see(double interval)
     if (comm->cutghost[a] < needed && domain->periodicity[a])
       error->one(FLERR, "fix mpc: the ghost cutoff {:.4g} is too short for the fluid to see all "
                  "colloids: use comm_modify cutoff {:.4g} or more", comm->cutghost[a], needed);
+
+  // LAMMPS does not look whether anybody has crossed the skin with `check no`
+  const int steps = std::max(neighbor->every, neighbor->delay) - 1;
+  const double skin = 2 * steps * update->dt * speed_;
+  if (force->pair && !neighbor->dist_check && neighbor->skin < skin)
+    error->one(FLERR, "fix mpc: neigh_modify check no: the skin {:.4g} is too short for lists that "
+               "are built every {} steps: use neighbor {:.4g} or more", neighbor->skin, steps + 1,
+               skin);
 }
 
 template <int D> void MpcColloids<D>::see_velocities()
