@@ -21,25 +21,33 @@ from srd_driver.events.state import (
 )
 
 
-def uniform(random: Any) -> Any:
-    """A number in [0, 1) by SplitMix64 (G. Steele et al., OOPSLA 2014)."""
-    random[0] += np.uint64(0x9E3779B97F4A7C15)
-    word = random[0]
+def scrambled(word: Any) -> Any:
+    """The mixing function of SplitMix64 (G. Steele et al., OOPSLA 2014)."""
+    word += np.uint64(0x9E3779B97F4A7C15)
     word = (word ^ (word >> np.uint64(30))) * np.uint64(0xBF58476D1CE4E5B9)
     word = (word ^ (word >> np.uint64(27))) * np.uint64(0x94D049BB133111EB)
-    word ^= word >> np.uint64(31)
-    return float(word >> np.uint64(11)) * 2.0**-53
+    return word ^ (word >> np.uint64(31))
 
 
-uniform = njit(cache=True, _nrt=False)(uniform)
+scrambled = njit(cache=True, _nrt=False)(scrambled)
 
 
-def react(c: Any, random: Any, m: Any, i: Any, surface: Any, speed: Any) -> None:
+def lot_of(seed: Any, m: Any, i: Any, visit: Any) -> Any:
+    """A number in [0, 1) for the visit of a particle, whatever was drawn for others before."""
+    word = scrambled(scrambled(seed + np.uint64(m)) + np.uint64(i))
+    return float(scrambled(word + np.uint64(visit)) >> np.uint64(11)) * 2.0**-53
+
+
+lot_of = njit(cache=True, _nrt=False)(lot_of)
+
+
+def react(c: Any, m: Any, i: Any, surface: Any, speed: Any) -> None:
     """Particle i reaches reaction surface 0 (A to B) or 1 (B to A) of reference m.
 
     One lot serves all probabilities: each set of labels has the right law by itself.
     """
-    lot = uniform(random)
+    lot = lot_of(c.seed, m, i, c.visits[m, i])
+    c.visits[m, i] += 1
     bin_ = min(int(speed / SPEED_BIN), SPEED_BINS - 1)
     c.hits[surface] += 1
     for k in range(c.probability.size):
@@ -58,10 +66,10 @@ def react(c: Any, random: Any, m: Any, i: Any, surface: Any, speed: Any) -> None
 react = njit(cache=True, _nrt=False)(react)
 
 
-def entering(s: Any, i: Any, j: Any, cutoff: Any, now: Any) -> Any:
-    """Normal speed with which j enters the sphere about i since both last moved freely, or -1."""
+def entering(s: Any, c: Any, i: Any, j: Any, now: Any) -> Any:
+    """Normal speed with which j enters the sphere about i in the flight that ends now, or -1."""
     body = s.body
-    start = max(body[i, TIME], body[j, TIME])
+    start = max(body[i, TIME], body[j, TIME], c.settled[0])
     length = now - start
     result = -1.0
     for end in range(2):  # the nearest image at either end: another may take over in between
@@ -80,11 +88,11 @@ def entering(s: Any, i: Any, j: Any, cutoff: Any, now: Any) -> Any:
             square += r * r
             b += r * u
             speed += u * u
-        gap = square - cutoff * cutoff
+        gap = square - c.cutoff * c.cutoff
         if gap > 0.0 and b < 0.0:
             root = b * b - speed * gap
             if root > 0.0 and gap <= (np.sqrt(root) - b) * length:
-                result = np.sqrt(root) / cutoff
+                result = np.sqrt(root) / c.cutoff
     return result
 
 
@@ -96,15 +104,30 @@ def pass_surfaces(s: Any, c: Any, i: Any, now: Any) -> None:
     own = c.center_of[i]
     for m in range(c.center.size):
         if m != own:
-            speed = entering(s, c.center[m], i, c.cutoff, now)
+            speed = entering(s, c, c.center[m], i, now)
             if speed >= 0.0:
-                react(c, s.random, m, i, 1, speed)
+                react(c, m, i, 1, speed)
     if own >= 0:
         for j in range(s.body.shape[0]):
             if j != i:
-                speed = entering(s, i, j, c.cutoff, now)
+                speed = entering(s, c, i, j, now)
                 if speed >= 0.0:
-                    react(c, s.random, own, j, 1, speed)
+                    react(c, own, j, 1, speed)
 
 
 pass_surfaces = njit(cache=True, _nrt=False)(pass_surfaces)
+
+
+def settle(s: Any, c: Any) -> None:
+    """Reactions at the imaginary spheres in the flights that are going on."""
+    now = s.clock[0]
+    for m in range(c.center.size):
+        for j in range(s.body.shape[0]):
+            if j != c.center[m]:
+                speed = entering(s, c, c.center[m], j, now)
+                if speed >= 0.0:
+                    react(c, m, j, 1, speed)
+    c.settled[0] = now
+
+
+settle = njit(cache=True, _nrt=False)(settle)

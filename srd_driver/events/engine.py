@@ -100,7 +100,7 @@ class HardSpheres:
         self.dimensions = len(box)
         self.walls = tuple(sorted(walls))
         _check(start, speed, box, set(walls), diameter)
-        spheres = _spheres(start, speed, box, set(walls), diameter, seed)
+        spheres = _spheres(start, speed, box, set(walls), diameter)
         kernel.fill_cells(spheres)
         i, j, distance = kernel.nearest(spheres)
         if distance < diameter * (1 - _OVERLAP):
@@ -112,7 +112,7 @@ class HardSpheres:
             bucket=np.full(buckets, -1, dtype=np.int32),
         )
         kernel.file_all(self._spheres)
-        self._colors = _colors(reactions, self._spheres)
+        self._colors = _colors(reactions, self._spheres, seed)
         self.set_colors(self._colors.chance)
 
     @classmethod
@@ -239,9 +239,9 @@ class HardSpheres:
 
     def set_colors(self, chance: ArrayLike) -> None:
         """Start the colours anew from q, broadcast to (M, N, K); labels are drawn from it."""
-        c, s = self._colors, self._spheres
+        c = self._colors
         c.chance[:] = chance
-        lots = np.random.default_rng([int(s.random[0]), 2]).random(c.label.shape)
+        lots = np.random.default_rng([int(c.seed), 2]).random(c.label.shape)
         c.label[:] = lots < c.chance
 
     def sample(self) -> None:
@@ -291,7 +291,7 @@ class HardSpheres:
 
 
 def _loaded(array: NDArray[Any]) -> Any:
-    return array if array.ndim else array.item()
+    return array if array.ndim else array[()] if array.dtype == np.uint64 else array.item()
 
 
 def _check(start: Array, velocities: Array, box: Array, walls: set[int], diameter: float) -> None:
@@ -328,7 +328,7 @@ def _check(start: Array, velocities: Array, box: Array, walls: set[int], diamete
 
 
 def _spheres(
-    start: Array, velocities: Array, box: Array, walls: set[int], diameter: float, seed: int
+    start: Array, velocities: Array, box: Array, walls: set[int], diameter: float
 ) -> Spheres:
     """The arrays with empty cells and an empty queue."""
     count, dimensions = start.shape
@@ -391,11 +391,10 @@ def _spheres(
         clock=np.zeros(2),
         tally=np.zeros(4, dtype=np.int64),
         sums=np.zeros(7),
-        random=np.random.default_rng(seed).integers(2**64, size=1, dtype=np.uint64),
     )
 
 
-def _colors(reactions: WallReactions | PairReactions | None, s: Spheres) -> Colors:
+def _colors(reactions: WallReactions | PairReactions | None, s: Spheres, seed: int) -> Colors:
     """The colours, all with q = 1/2 about walls and all A about central particles."""
     count = len(s.body)
     probability = np.array(reactions.probabilities if reactions else (), dtype=float)
@@ -436,6 +435,9 @@ def _colors(reactions: WallReactions | PairReactions | None, s: Spheres) -> Colo
         cutoff=cutoff,
         label=np.zeros((references, count, kinds), dtype=np.uint8),
         chance=np.full((references, count, kinds), chance),
+        visits=np.zeros((references, count), dtype=np.int32),
+        settled=np.zeros(1),
+        seed=np.uint64(seed),
         reactions=np.zeros((2, 2, kinds)),
         hits=np.zeros(2, dtype=np.int64),
         speeds=np.zeros((2, kinds, SPEED_BINS)),

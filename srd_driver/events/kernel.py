@@ -10,7 +10,7 @@ from typing import Any
 import numpy as np
 from numba import njit
 
-from srd_driver.events.colors import pass_surfaces, react
+from srd_driver.events.colors import pass_surfaces, react, settle
 from srd_driver.events.prediction import predict
 from srd_driver.events.queue import first, insert, remove
 from srd_driver.events.state import (
@@ -81,9 +81,9 @@ def collide(s: Any, c: Any, i: Any, j: Any, now: Any) -> None:
     if c.center.size:
         speed = -b / np.sqrt(square)
         if c.center_of[i] >= 0:
-            react(c, s.random, c.center_of[i], j, 0, speed)
+            react(c, c.center_of[i], j, 0, speed)
         if c.center_of[j] >= 0:
-            react(c, s.random, c.center_of[j], i, 0, speed)
+            react(c, c.center_of[j], i, 0, speed)
     for axis in range(3):
         change = r[axis] * (b / square)
         body[i, VELOCITY + axis] += change
@@ -110,7 +110,7 @@ def leave(s: Any, c: Any, i: Any, axis: Any, side: Any, now: Any) -> None:
         if s.wall[axis]:
             speed = abs(body[i, VELOCITY + axis])
             if axis == c.axis:
-                react(c, s.random, 0, i, side, speed)
+                react(c, 0, i, side, speed)
             body[i, VELOCITY + axis] = -body[i, VELOCITY + axis]
             s.sums[WALL_MOMENTUM + 2 * axis + side] += 2 * speed
             s.tally[WALL_HITS] += 1
@@ -155,6 +155,8 @@ def advance(s: Any, c: Any, until: Any) -> None:
             insert(s, i)
             i, other = other, -1
     s.clock[0] = until
+    if c.center.size:
+        settle(s, c)
 
 
 advance = njit(cache=True, _nrt=False, nogil=True)(advance)

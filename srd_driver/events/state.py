@@ -51,7 +51,6 @@ class Spheres(NamedTuple):
         clock: (2,), the time, and the number of the bucket that is being emptied.
         tally: numbers of collisions, wall hits, cell crossings and renewed predictions, (4,).
         sums: (7,), see `VIRIAL`, `WALL_MOMENTUM`.
-        random: state of the random numbers, (1,).
     """
 
     diameter: float
@@ -74,7 +73,6 @@ class Spheres(NamedTuple):
     clock: Array
     tally: NDArray[np.int64]
     sums: Array
-    random: NDArray[np.uint64]
 
 
 class Colors(NamedTuple):
@@ -91,6 +89,9 @@ class Colors(NamedTuple):
         label: (M, N, K), 1 for A, drawn by lot at each reaction.
         chance: (M, N, K), the probability q to be A given the trajectory: the mean of `label`
             over all lots.
+        visits: to reaction surfaces by each particle, (M, N): with the seed, they make its lots.
+        settled: time up to which entries into the imaginary spheres are accounted for, (1,).
+        seed: of the lots.
         reactions: (2, 2, K): A to B and B to A; counted with labels, expected with q.
         hits: (2,), visits to the two reaction surfaces.
         speeds: (2, K, 120): normal speeds of particles that reacted, in bins of 1/20, by labels
@@ -110,6 +111,9 @@ class Colors(NamedTuple):
     cutoff: float
     label: NDArray[np.uint8]
     chance: Array
+    visits: Integers
+    settled: Array
+    seed: np.uint64
     reactions: Array
     hits: NDArray[np.int64]
     speeds: Array
