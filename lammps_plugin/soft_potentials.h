@@ -28,10 +28,10 @@ struct InverseTwelve {
   }
   static double cutoff(double) { return 0; }
 
-  double slope(double w) const    // u'
+  double slope(double w) const    // u', with the roundings of series()
   {
-    const double i = 1 / w, i2 = i * i, i4 = i2 * i2;
-    return -6 * c12 * i4 * i2 * i;
+    const double i = 1 / w, i2 = i * i, i4 = i2 * i2, u = c12 * i4 * i2;
+    return -6 * u * i;
   }
   Series series(double w) const
   {
@@ -55,8 +55,9 @@ struct WeeksChandlerAndersen {
 
   double slope(double w) const
   {
-    const double i = 1 / w, i3 = i * i * i;
-    return i3 * i * (3 * c6 - 6 * c12 * i3);
+    const double i = 1 / w, i2 = i * i, i3 = i2 * i;
+    const double six = c6 * i3, twelve = c12 * i3 * i3;
+    return (3 * six - 6 * twelve) * i;
   }
   Series series(double w) const
   {
