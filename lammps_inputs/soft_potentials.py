@@ -1,4 +1,4 @@
-"""The repulsions of lane formation, each once: numpy energy and derivatives beside its LAMMPS lines.
+"""The repulsions of lane formation, each once: numpy derivatives beside its LAMMPS lines.
 
 A temperature of configurations needs three derivatives (delhommelle-2005, 4 and 5). Distances in
 sigma, energies in epsilon, whatever the pair's own are.
