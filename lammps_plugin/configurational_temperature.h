@@ -29,8 +29,6 @@ class ConfigurationalTemperature {
     if (!pair)
       error.all(FLERR, "{}: pair_style {}: must be soft/disk or wca, which give their derivatives",
                 user, force.pair_style ? force.pair_style : "none");
-    if (!force.newton_pair)
-      error.all(FLERR, "{}: newton: must be on, forces on ghost atoms are to be summed", user);
     return *pair;
   }
 
@@ -50,27 +48,15 @@ class ConfigurationalTemperature {
   }
 
   // dT/dr_k = (dG/dr_k - T dL/dr_k) / L, G the sum of F^2, L of the Laplacians, after sum().
-  // dG/dr_k = -2 sum_i H_ki F_i, H the Hessian: of each contact, -2 h (F_i - F_j) on i, + on j.
-  template <class Owner> void differentiate(Comm &comm, Owner *owner, int atoms, int ghosts)
+  // dG/dr_k = -2 sum_i H_ki F_i, H the Hessian: of each contact, -2 h (F_i - F_j) on i, + on j. Positions x as at sum().
+  template <class Owner>
+  void differentiate(Comm &comm, Owner *owner, int atoms, int ghosts, int dimension,
+                     const double (*x)[3])
   {
     stage_ = Stage::forces;
     comm.forward_comm(owner, 3);
     gradient.assign(atoms + ghosts, Triple{});
-    for (const auto &c : curvature.contacts) {
-      const auto &a = force[c.i], &b = force[c.j];
-      const double dx = a[0] - b[0], dy = a[1] - b[1], dz = a[2] - b[2];
-      const double along = c.bend * (c.r[0] * dx + c.r[1] * dy + c.r[2] * dz);
-      const double gx = 2 * (c.slope * dx + along * c.r[0]);
-      const double gy = 2 * (c.slope * dy + along * c.r[1]);
-      const double gz = 2 * (c.slope * dz + along * c.r[2]);
-      auto &on_i = gradient[c.i], &on_j = gradient[c.j];
-      on_i[0] -= gx;
-      on_i[1] -= gy;
-      on_i[2] -= gz;
-      on_j[0] += gx;
-      on_j[1] += gy;
-      on_j[2] += gz;
-    }
+    dimension == 2 ? multiply<2>(x) : multiply<3>(x);
     stage_ = Stage::gradients;
     comm.reverse_comm(owner, 3);
     const double t = temperature();
@@ -113,6 +99,25 @@ class ConfigurationalTemperature {
 
  private:
   enum class Stage { sums, forces, gradients } stage_ = Stage::sums;
+
+  template <int D> void multiply(const double (*__restrict x)[3])
+  {
+    const Triple *__restrict f = force.data();
+    Triple *__restrict g = gradient.data();
+    for (const auto &[i, j, slope, bend] : curvature.contacts) {
+      double r[D], d[D], along = 0;
+      for (int a = 0; a < D; ++a) {
+        r[a] = x[i][a] - x[j][a];
+        d[a] = f[i][a] - f[j][a];
+        along += r[a] * d[a];
+      }
+      for (int a = 0; a < D; ++a) {
+        const double share = 2 * (slope * d[a] + bend * along * r[a]);
+        g[i][a] -= share;
+        g[j][a] += share;
+      }
+    }
+  }
 };
 
 }    // namespace LAMMPS_NS

@@ -10,10 +10,10 @@ namespace LAMMPS_NS {
 
 using Triple = std::array<double, 3>;
 
-// Atoms within their cutoff: their separation r, and their Hessian, slope 1 + bend r r.
+// Atoms i and j, which may be a ghost, within their cutoff, and the Hessian of the pair:
+// slope 1 + bend r r, r from j to i.
 struct Contact {
-  int i, j;    // j may be a ghost
-  Triple r;
+  int i, j;
   double slope, bend;
 };
 

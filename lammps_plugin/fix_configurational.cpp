@@ -106,7 +106,8 @@ void FixConfigurational::pre_reverse(int, int)
                "fix {}: step {}: the Laplacian of the potential energy is {:.3g}, so that the "
                "configurational temperature has no positive value: too few atoms interact",
                style, update->ntimestep, now_.laplacian);
-  now_.differentiate(*comm, this, atoms, ghosts);
+  now_.differentiate(*comm, this, atoms, ghosts, domain->dimension,
+                     reinterpret_cast<const double (*)[3]>(atom->x[0]));
 }
 
 void FixConfigurational::kick()

@@ -49,6 +49,9 @@ void FixIsokinetic::init()
   if (std::string(update->integrate_style).find("respa") == 0)
     error->all(FLERR, "fix {}: run_style respa is not supported", style);
   step_ = update->dt;
+  inverse_.assign(atom->ntypes + 1, 0.0);
+  if (!atom->rmass)
+    for (int type = 1; type <= atom->ntypes; ++type) inverse_[type] = 1 / atom->mass[type];
 }
 
 void FixIsokinetic::reset_dt()
@@ -59,6 +62,11 @@ void FixIsokinetic::reset_dt()
 double FixIsokinetic::mass(int i) const
 {
   return atom->rmass ? atom->rmass[i] : atom->mass[atom->type[i]];
+}
+
+double FixIsokinetic::inverse_mass(int i) const
+{
+  return atom->rmass ? 1 / atom->rmass[i] : inverse_[atom->type[i]];
 }
 
 // The sum that gives canonical configurations at T: of n directions of N atoms, n are taken by the
@@ -99,27 +107,31 @@ void FixIsokinetic::setup(int)
 // (2) and (3) over half a step at fixed positions, exactly: with a = F.p / (2K), b = F.(F/m) / (2K),
 // p' = (p + F s) / (ds/dt), s = (a/b)(cosh(tau sqrt b) - 1) + sinh(tau sqrt b) / sqrt b. The length
 // of p + F s is known, so that p' is put on the constraint to rounding, whatever p was.
-void FixIsokinetic::kick()
+FixIsokinetic::Kick FixIsokinetic::kick()
 {
-  const auto *x = reinterpret_cast<const double (*)[3]>(atom->x[0]);
-  auto *v = reinterpret_cast<double (*)[3]>(atom->v[0]);
-  const auto *f = reinterpret_cast<const double (*)[3]>(atom->f[0]);
-  const double held[3] = {1.0 * held_[0], 1.0 * held_[1], 1.0 * held_[2]};
+  const auto *__restrict x = reinterpret_cast<const double (*)[3]>(atom->x[0]);
+  const auto *__restrict v = reinterpret_cast<const double (*)[3]>(atom->v[0]);
+  const auto *__restrict f = reinterpret_cast<const double (*)[3]>(atom->f[0]);
   const double tau = step_ / 2, rate = flow_.rate, origin = flow_.origin;
   const int n = atom->nlocal;
 
-  double pp = 0, pf = 0, ff = 0;
+  double pp[3] = {}, pf[3] = {}, ff[3] = {};    // by direction, so that no addition waits
   for (int i = 0; i < n; ++i) {
-    const double m = mass(i), inverse = 1 / m;
+    const double m = mass(i), inverse = inverse_mass(i);
     const double c[3] = {v[i][0] - rate * (x[i][1] - origin), v[i][1], v[i][2]};
     for (int a = 0; a < 3; ++a) {
-      pp += held[a] * m * c[a] * c[a];
-      pf += held[a] * c[a] * f[i][a];
-      ff += held[a] * f[i][a] * f[i][a] * inverse;
+      pp[a] += m * c[a] * c[a];
+      pf[a] += c[a] * f[i][a];
+      ff[a] += f[i][a] * f[i][a] * inverse;
     }
   }
-  const double mine[3] = {pp, pf, ff};
-  double all[3];
+  double mine[3] = {}, all[3];
+  for (int a = 0; a < 3; ++a) {
+    if (!held_[a]) continue;
+    mine[0] += pp[a];
+    mine[1] += pf[a];
+    mine[2] += ff[a];
+  }
   MPI_Allreduce(mine, all, 3, MPI_DOUBLE, MPI_SUM, world);
 
   friction_ = all[1] / all[0];
@@ -134,44 +146,51 @@ void FixIsokinetic::kick()
   const double s = b > 0 ? friction_ / b * 2 * half * half + std::sinh(angle) / std::sqrt(b) : tau;
   const double norm = std::sqrt(squares_ / (all[0] + 2 * s * all[1] + s * s * all[2]));
 
-  double by_velocity[3], by_force[3];
+  Kick kick;
   for (int a = 0; a < 3; ++a) {
-    by_velocity[a] = held_[a] ? norm : 1;
-    by_force[a] = held_[a] ? norm * s : tau;
+    kick.velocity[a] = held_[a] ? norm : 1;
+    kick.force[a] = held_[a] ? norm * s : tau;
   }
+  return kick;
+}
+
+// Kicks, and with `flies` a flight of a step; the square of the longest.
+template <bool flies> double FixIsokinetic::apply(const Kick &kick)
+{
+  auto *__restrict x = reinterpret_cast<double (*)[3]>(atom->x[0]);
+  auto *__restrict v = reinterpret_cast<double (*)[3]>(atom->v[0]);
+  const auto *__restrict f = reinterpret_cast<const double (*)[3]>(atom->f[0]);
+  const int n = atom->nlocal;
+  double fastest = 0;
   for (int i = 0; i < n; ++i) {
-    const double inverse = 1 / mass(i);
-    const double u[3] = {rate * (x[i][1] - origin), 0, 0};
-    for (int a = 0; a < 3; ++a)
-      v[i][a] = u[a] + by_velocity[a] * (v[i][a] - u[a]) + by_force[a] * f[i][a] * inverse;
+    const double inverse = inverse_mass(i);
+    const double flow = flow_.rate * (x[i][1] - flow_.origin);
+    v[i][0] = flow + kick.velocity[0] * (v[i][0] - flow) + kick.force[0] * f[i][0] * inverse;
+    for (int a = 1; a < 3; ++a)
+      v[i][a] = kick.velocity[a] * v[i][a] + kick.force[a] * f[i][a] * inverse;
+    if constexpr (flies) {
+      for (int a = 0; a < 3; ++a) x[i][a] += step_ * v[i][a];
+      fastest = std::max(fastest, v[i][0] * v[i][0] + v[i][1] * v[i][1] + v[i][2] * v[i][2]);
+    }
   }
+  return step_ * step_ * fastest;
 }
 
 void FixIsokinetic::initial_integrate(int)
 {
-  kick();
+  double furthest;
+  if (sllod_) {
+    apply<false>(kick());
+    furthest = drift_with_flow();
+  } else
+    furthest = apply<true>(kick());
   const double longest = longest_move(*neighbor);
-  const double furthest = sllod_ ? drift_with_flow() : drift();
   if (!(furthest < longest * longest)) stop(longest);
 }
 
 void FixIsokinetic::final_integrate()
 {
-  kick();
-}
-
-// Free flight; the square of the longest move.
-double FixIsokinetic::drift()
-{
-  auto *x = reinterpret_cast<double (*)[3]>(atom->x[0]);
-  const auto *v = reinterpret_cast<const double (*)[3]>(atom->v[0]);
-  const int n = atom->nlocal;
-  double fastest = 0;
-  for (int i = 0; i < n; ++i) {
-    for (int a = 0; a < 3; ++a) x[i][a] += step_ * v[i][a];
-    fastest = std::max(fastest, v[i][0] * v[i][0] + v[i][1] * v[i][1] + v[i][2] * v[i][2]);
-  }
-  return step_ * step_ * fastest;
+  apply<false>(kick());
 }
 
 // SLLOD without forces: half a step of dc_x/dt = -rate c_y kept on the constraint, flight with the

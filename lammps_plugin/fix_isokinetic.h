@@ -6,6 +6,8 @@
 
 #include "shear_flow.h"
 
+#include <vector>
+
 namespace LAMMPS_NS {
 
 class FixIsokinetic : public Fix {
@@ -28,9 +30,15 @@ class FixIsokinetic : public Fix {
   double step_ = 0;
   ShearFlow flow_;
 
+  std::vector<double> inverse_;    // masses of the types
+
+  struct Kick {
+    double velocity[3], force[3];    // c' = velocity c + force F / m, c relative to the flow
+  };
   double mass(int i) const;
-  void kick();
-  double drift();
+  double inverse_mass(int i) const;
+  Kick kick();
+  template <bool flies> double apply(const Kick &);
   double drift_with_flow();
   void stop(double);
 };

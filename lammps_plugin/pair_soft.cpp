@@ -10,7 +10,7 @@
 #include "neighbor.h"
 #include "utils.h"
 
-#include <cmath>
+#include <algorithm>
 #include <cstring>
 
 using namespace LAMMPS_NS;
@@ -97,7 +97,10 @@ template <class Potential> void PairSoft<Potential>::init_style()
   if (atom->molecular != Atom::ATOMIC)
     error->all(FLERR, "pair_style {}: atom_style {}: must be atomic, without bonds",
                Potential::name, atom->atom_style);
+  if (!force->newton_pair)
+    error->all(FLERR, "pair_style {}: newton: must be on, pairs are computed once", Potential::name);
   neighbor->add_request(this);
+  alike_ = true;
   fast_.assign(static_cast<std::size_t>(atom->ntypes) * atom->ntypes, Fast{});
 }
 
@@ -119,6 +122,8 @@ template <class Potential> double PairSoft<Potential>::init_one(int i, int j)
   fast.potential = Potential::make(epsilon_[i][j], sigma_[i][j]);
   if (offset_flag && !Potential::own_cutoff) fast.shift = fast.potential.series(fast.cutsq).u;
   fast_[(i - 1) * atom->ntypes + j - 1] = fast_[(j - 1) * atom->ntypes + i - 1] = fast;
+  alike_ = alike_ && epsilon_[i][j] == epsilon_[1][1] && sigma_[i][j] == sigma_[1][1] &&
+      cut_[i][j] == cut_[1][1];
   return cut_[i][j];
 }
 
@@ -126,6 +131,7 @@ template <class Potential> void PairSoft<Potential>::compute(int eflag, int vfla
 {
   ev_init(eflag, vflag);
   auto *force = reinterpret_cast<double (*)[3]>(atom->f[0]);
+  if (neighbor->ago == 0) flatten();
   if (curvature_) curvature_->clear(atom->nlocal + atom->nghost);
   if (evflag)
     curvature_ ? pass<true, true>(force, curvature_) : pass<true, false>(force, nullptr);
@@ -141,75 +147,120 @@ void PairSoft<Potential>::survey(double (*force)[3], Curvature &curvature)
   pass<false, true>(force, &curvature);
 }
 
-// One pass over the neighbour list: forces, with energy and virial, with curvature.
 template <class Potential>
 template <bool tally, bool curved>
-void PairSoft<Potential>::pass(double (*f)[3], Curvature *curvature)
+void PairSoft<Potential>::pass(double (*force)[3], Curvature *curvature)
 {
-  const auto *x = reinterpret_cast<const double (*)[3]>(atom->x[0]);
-  const int *type = atom->type;
-  const int types = atom->ntypes;
-  const int nlocal = atom->nlocal;
-  const int newton = force->newton_pair;
-  const int dimension = domain->dimension;
-  double laplacian = 0;
+  if (domain->dimension == 2)
+    alike_ ? pass<2, true, tally, curved>(force, curvature)
+           : pass<2, false, tally, curved>(force, curvature);
+  else
+    alike_ ? pass<3, true, tally, curved>(force, curvature)
+           : pass<3, false, tally, curved>(force, curvature);
+}
 
-  for (int ii = 0; ii < list->inum; ++ii) {
-    const int i = list->ilist[ii];
-    const int *neighbours = list->firstneigh[i];
-    const int count = list->numneigh[i];
-    const Fast *fast = &fast_[(type[i] - 1) * types] - 1;    // types begin with 1
-    const double xi = x[i][0], yi = x[i][1], zi = x[i][2];
-    double fx = 0, fy = 0, fz = 0;
-    double gx = 0, gy = 0, gz = 0;
-    for (int n = 0; n < count; ++n) {
-      const int j = neighbours[n];    // no special bonds: init_style() saw to that
-      const double dx = xi - x[j][0], dy = yi - x[j][1], dz = zi - x[j][2];
-      const double w = dx * dx + dy * dy + dz * dz;
-      const Fast &pair = fast[type[j]];
-      if (w >= pair.cutsq) continue;
-
-      double slope, energy = 0;
-      if constexpr (tally || curved) {
-        const auto s = pair.potential.series(w);
-        slope = 2 * s.u1;
-        energy = s.u - pair.shift;
-        if constexpr (curved) {
-          const double third = (8 + 4 * dimension) * s.u2 + 8 * w * s.u3;
-          laplacian += 8 * w * s.u2 + 4 * dimension * s.u1;    // of both atoms
-          gx += 2 * third * dx;
-          gy += 2 * third * dy;
-          gz += 2 * third * dz;
-          auto &other = curvature->gradient[j];
-          other[0] -= 2 * third * dx;
-          other[1] -= 2 * third * dy;
-          other[2] -= 2 * third * dz;
-          curvature->contacts.push_back({i, j, {dx, dy, dz}, slope, 4 * s.u2});
-        }
-      } else
-        slope = 2 * pair.potential.slope(w);
-      const double px = slope * dx, py = slope * dy, pz = slope * dz;
-      fx -= px;
-      fy -= py;
-      fz -= pz;
-      if (newton || j < nlocal) {
-        f[j][0] += px;
-        f[j][1] += py;
-        f[j][2] += pz;
+// The neighbour list as pairs. Those of one atom do not follow each other, so that sums of forces on
+// it do not wait for each other.
+template <class Potential> void PairSoft<Potential>::flatten()
+{
+  constexpr int together = 8;
+  pairs_.clear();
+  for (int first = 0; first < list->inum; first += together) {
+    const int last = std::min(first + together, list->inum);
+    bool more = true;
+    for (int n = 0; more; ++n) {
+      more = false;
+      for (int ii = first; ii < last; ++ii) {
+        const int i = list->ilist[ii];
+        if (n >= list->numneigh[i]) continue;
+        pairs_.push_back({i, list->firstneigh[i][n]});    // no special bonds: see init_style()
+        more = true;
       }
-      if constexpr (tally) ev_tally(i, j, nlocal, newton, energy, 0.0, -slope, dx, dy, dz);
-    }
-    f[i][0] += fx;
-    f[i][1] += fy;
-    f[i][2] += fz;
-    if constexpr (curved) {
-      auto &own = curvature->gradient[i];
-      own[0] += gx;
-      own[1] += gy;
-      own[2] += gz;
     }
   }
-  if constexpr (curved) curvature->laplacian = laplacian;
+}
+
+// One pass over the pairs: forces, with energy and virial, with curvature. Of a few hundred pairs
+// those within the cutoff are gathered first, without a branch to mispredict; then their
+// derivatives are computed, in vectors; then these are added up.
+template <class Potential>
+template <int D, bool alike, bool tally, bool curved>
+void PairSoft<Potential>::pass(double (*__restrict f)[3], Curvature *curvature)
+{
+  constexpr int chunk = 256;
+  struct {
+    alignas(64) double r[chunk + 1][D], w[chunk + 1], slope[chunk], bend[chunk], third[chunk],
+        laplacian[chunk], energy[chunk];
+    Couple couple[chunk + 1];
+  } near;
+
+  const auto *__restrict x = reinterpret_cast<const double (*)[3]>(atom->x[0]);
+  const int *__restrict type = atom->type;
+  const int types = atom->ntypes, nlocal = atom->nlocal;
+  const Fast common = fast_[0];
+  const auto of = [&](const Couple &c) {
+    return alike ? common : fast_[(type[c.i] - 1) * types + type[c.j] - 1];
+  };
+
+  const int all = static_cast<int>(pairs_.size());
+  for (int start = 0; start < all; start += chunk) {
+    const int end = std::min(start + chunk, all);
+    int hits = 0;
+    for (int p = start; p < end; ++p) {
+      const Couple c = pairs_[p];
+      double w = 0;
+      for (int a = 0; a < D; ++a) {
+        near.r[hits][a] = x[c.i][a] - x[c.j][a];
+        w += near.r[hits][a] * near.r[hits][a];
+      }
+      near.couple[hits] = c;
+      near.w[hits] = w;
+      hits += w < of(c).cutsq;
+    }
+
+    for (int n = 0; n < hits; ++n) {
+      const Fast pair = of(near.couple[n]);
+      const double w = near.w[n];
+      if constexpr (tally || curved) {
+        const auto s = pair.potential.series(w);
+        near.slope[n] = 2 * s.u1;
+        near.energy[n] = s.u - pair.shift;
+        near.bend[n] = 4 * s.u2;
+        near.third[n] = (16 + 8 * D) * s.u2 + 16 * w * s.u3;    // of both atoms, as the next
+        near.laplacian[n] = 8 * w * s.u2 + 4 * D * s.u1;
+      } else
+        near.slope[n] = 2 * pair.potential.slope(w);
+    }
+
+    for (int n = 0; n < hits; ++n) {
+      const auto [i, j] = near.couple[n];
+      for (int a = 0; a < D; ++a) {
+        const double push = near.slope[n] * near.r[n][a];
+        f[i][a] -= push;
+        f[j][a] += push;
+      }
+      if constexpr (tally)
+        ev_tally(i, j, nlocal, 1, near.energy[n], 0.0, -near.slope[n], near.r[n][0], near.r[n][1],
+                 D == 3 ? near.r[n][2] : 0.0);
+    }
+
+    if constexpr (curved) {
+      Triple *__restrict gradient = curvature->gradient.data();
+      const std::size_t before = curvature->contacts.size();
+      curvature->contacts.resize(before + hits);
+      Contact *__restrict contact = curvature->contacts.data() + before;
+      for (int n = 0; n < hits; ++n) {
+        const auto [i, j] = near.couple[n];
+        for (int a = 0; a < D; ++a) {
+          const double push = near.third[n] * near.r[n][a];
+          gradient[i][a] += push;
+          gradient[j][a] -= push;
+        }
+        curvature->laplacian += near.laplacian[n];
+        contact[n] = {i, j, near.slope[n], near.bend[n]};
+      }
+    }
+  }
 }
 
 template <class Potential>

@@ -54,9 +54,17 @@ template <class Potential> class PairSoft : public PairSmooth {
   double cut_global_ = 0;
   double **epsilon_ = nullptr, **sigma_ = nullptr, **cut_ = nullptr;
   std::vector<Fast> fast_;    // by pair of types from 0
+  bool alike_ = true;         // all types interact alike, as colours do
+
+  struct Couple {
+    int i, j;
+  };
+  std::vector<Couple> pairs_;    // of the neighbour list
 
   void allocate();
+  void flatten();
   template <bool tally, bool curved> void pass(double (*)[3], Curvature *);
+  template <int D, bool alike, bool tally, bool curved> void pass(double (*)[3], Curvature *);
 };
 
 }    // namespace LAMMPS_NS
