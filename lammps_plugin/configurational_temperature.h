@@ -111,11 +111,14 @@ class ConfigurationalTemperature {
         d[a] = f[i][a] - f[j][a];
         along += r[a] * d[a];
       }
+      double on_i[D], on_j[D];    // loaded before anything is stored: i and j differ
       for (int a = 0; a < D; ++a) {
         const double share = 2 * (slope * d[a] + bend * along * r[a]);
-        g[i][a] -= share;
-        g[j][a] += share;
+        on_i[a] = g[i][a] - share;
+        on_j[a] = g[j][a] + share;
       }
+      for (int a = 0; a < D; ++a) g[i][a] = on_i[a];
+      for (int a = 0; a < D; ++a) g[j][a] = on_j[a];
     }
   }
 };

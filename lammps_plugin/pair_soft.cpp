@@ -198,8 +198,18 @@ void PairSoft<Potential>::pass(double (*__restrict f)[3], Curvature *curvature)
   const int *__restrict type = atom->type;
   const int types = atom->ntypes, nlocal = atom->nlocal;
   const Fast common = fast_[0];
-  const auto of = [&](const Couple &c) {
-    return alike ? common : fast_[(type[c.i] - 1) * types + type[c.j] - 1];
+  const Fast *__restrict by_types = fast_.data();
+  const auto of = [=](const Couple &c) {
+    return alike ? common : by_types[(type[c.i] - 1) * types + type[c.j] - 1];
+  };
+  const auto add = [](double *on_i, double *on_j, double factor, const double *r) {
+    double a[D], b[D];    // loaded before anything is stored: i and j differ
+    for (int k = 0; k < D; ++k) {
+      a[k] = on_i[k] + factor * r[k];
+      b[k] = on_j[k] - factor * r[k];
+    }
+    for (int k = 0; k < D; ++k) on_i[k] = a[k];
+    for (int k = 0; k < D; ++k) on_j[k] = b[k];
   };
 
   const int all = static_cast<int>(pairs_.size());
@@ -234,11 +244,7 @@ void PairSoft<Potential>::pass(double (*__restrict f)[3], Curvature *curvature)
 
     for (int n = 0; n < hits; ++n) {
       const auto [i, j] = near.couple[n];
-      for (int a = 0; a < D; ++a) {
-        const double push = near.slope[n] * near.r[n][a];
-        f[i][a] -= push;
-        f[j][a] += push;
-      }
+      add(f[i], f[j], -near.slope[n], near.r[n]);
       if constexpr (tally)
         ev_tally(i, j, nlocal, 1, near.energy[n], 0.0, -near.slope[n], near.r[n][0], near.r[n][1],
                  D == 3 ? near.r[n][2] : 0.0);
@@ -251,11 +257,7 @@ void PairSoft<Potential>::pass(double (*__restrict f)[3], Curvature *curvature)
       Contact *__restrict contact = curvature->contacts.data() + before;
       for (int n = 0; n < hits; ++n) {
         const auto [i, j] = near.couple[n];
-        for (int a = 0; a < D; ++a) {
-          const double push = near.third[n] * near.r[n][a];
-          gradient[i][a] += push;
-          gradient[j][a] -= push;
-        }
+        add(gradient[i].data(), gradient[j].data(), near.third[n], near.r[n]);
         curvature->laplacian += near.laplacian[n];
         contact[n] = {i, j, near.slope[n], near.bend[n]};
       }
