@@ -50,7 +50,8 @@ def main() -> None:
 
     peer, kinetic, configurational = KINDS
     rows = [
-        "| disks | fix nvk [us] | isokinetic [us] | over nvk | configurational [us] | over isokinetic |",
+        "| disks | fix nvk [us] | isokinetic [us] | over nvk | configurational [us] "
+        "| over isokinetic |",
         "|---|---|---|---|---|---|",
     ]
     for disks in (n for n in DISKS if n <= options.largest):

@@ -1,4 +1,4 @@
-"""Physics of the thermostats, by LAMMPS decks: one equilibrium, and lanes under one of them only."""
+"""Physics of the thermostats, by LAMMPS decks: one equilibrium, lanes under one thermostat."""
 
 from pathlib import Path
 
