@@ -19,7 +19,9 @@ THERMOSTATS = {
     "kinetic": "fix thermostat all isokinetic 1.0",
     "kinetic x": "fix thermostat all isokinetic 1.0 x",
     "configurational": "fix thermostat all configurational 1.0 10",
-    "langevin": "fix free all nve\nfix thermostat all langevin 1.0 1.0 1.0 4711 zero yes",
+    "langevin": """fix free all nve
+fix thermostat all langevin 1.0 1.0 1.0 4711 zero yes
+fix flat all enforce2d""",
 }
 DECK = """
 units lj
@@ -126,16 +128,16 @@ FIELD = "fix pull plus addforce {0} 0 0\nfix push minus addforce -{0} 0 0"
 def test_lanes_under_the_kinetic_thermostat_only(
     thermostat: str, low: float, high: float, command: Run, tmp_path: Path
 ) -> None:
-    """n = 0.75, F = 1.75: phi > 0.7 with the kinetic, below 0.24 with the configurational."""
+    """n = 0.75, F = 1.75: the paper has phi > 0.7 after 5000 time units, and below 0.24."""
     run(
         command,
         tmp_path,
         thermostat,
         density=0.75,
         field=FIELD.format(1.75),
-        settle=300000,
+        settle=1_500_000,  # lanes begin within 600 time units
     )
     positions, velocities, colours, lengths = frames(tmp_path)
     order = mean(lane_order(positions, colours, lengths))
     print(thermostat, order, kinetic_temperature(velocities).mean())
-    assert low < order.value <= high
+    assert low <= order.value <= high
