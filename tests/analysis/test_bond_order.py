@@ -12,7 +12,7 @@ def triangular(columns: int, rows: int) -> tuple[np.ndarray, np.ndarray]:
     return positions, np.array([columns, rows * np.sqrt(3) / 2])
 
 
-def test_a_perfect_crystal():
+def test_a_perfect_crystal() -> None:
     random = np.random.default_rng(0)
     positions, lengths = triangular(10, 12)
     # shaken by 1e-6: not degenerate
@@ -22,7 +22,7 @@ def test_a_perfect_crystal():
     assert order.mean_modulus == pytest.approx([1], abs=1e-4)
 
 
-def test_a_compressed_triangular_lattice_by_hand():
+def test_a_compressed_triangular_lattice_by_hand() -> None:
     """Two bonds along x, four at +- atan(2 h)."""
     i, j = np.meshgrid(np.arange(8), np.arange(8), indexing="ij")
     shift = 0.5 * (j % 2)
@@ -34,7 +34,7 @@ def test_a_compressed_triangular_lattice_by_hand():
     assert local == pytest.approx(np.full(64, expected), abs=1e-4)
 
 
-def test_brute_force_by_a_triangulation_of_all_images():
+def test_brute_force_by_a_triangulation_of_all_images() -> None:
     random = np.random.default_rng(1)
     count, lengths = 60, np.array([9.0, 7.0])
     positions = random.uniform(0, lengths, (count, 2))
@@ -48,7 +48,7 @@ def test_brute_force_by_a_triangulation_of_all_images():
     assert local_bond_order(positions, lengths) == pytest.approx(expected, abs=1e-4)
 
 
-def test_two_crystals_turned_by_30_degrees_cancel_in_the_mean_only():
+def test_two_crystals_turned_by_30_degrees_cancel_in_the_mean_only() -> None:
     local = np.array([1.0, -1.0])  # exp(6 i 30 degrees) = -1
     assert abs(local.mean()) == 0
     assert np.abs(local).mean() == 1

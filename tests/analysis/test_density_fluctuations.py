@@ -4,7 +4,7 @@ import pytest
 from analysis.density_fluctuations import cluster_sizes, number_variance, structure_factor
 
 
-def test_the_structure_factor_of_a_lattice():
+def test_the_structure_factor_of_a_lattice() -> None:
     """N at the wave vectors of the lattice, 0 at others."""
     i, j = np.meshgrid(np.arange(4), np.arange(3), indexing="ij")
     positions = np.stack([i, j], -1).reshape(1, -1, 2).astype(float)
@@ -16,7 +16,7 @@ def test_the_structure_factor_of_a_lattice():
     assert s[~bragg] == pytest.approx(0, abs=1e-12)
 
 
-def test_the_structure_factor_by_brute_force():
+def test_the_structure_factor_by_brute_force() -> None:
     random = np.random.default_rng(0)
     positions = random.uniform(0, [5, 6, 7], (2, 20, 3))
     waves, s = structure_factor(positions, [5.0, 6.0, 7.0], 1)
@@ -30,7 +30,7 @@ def test_the_structure_factor_by_brute_force():
         assert value == pytest.approx(total / 2 / 20)
 
 
-def test_uncorrelated_particles():
+def test_uncorrelated_particles() -> None:
     random = np.random.default_rng(1)
     positions = random.uniform(0, 10, (2000, 50, 2))
     _, s = structure_factor(positions, [10.0, 10.0], 2)
@@ -38,13 +38,13 @@ def test_uncorrelated_particles():
     assert number_variance(positions, [10.0, 10.0], 4) == pytest.approx(1 - 1 / 16, rel=0.03)
 
 
-def test_the_number_variance_by_hand():
+def test_the_number_variance_by_hand() -> None:
     corners = np.array([[[0.5, 0.5], [1.5, 0.5], [0.5, 1.5], [-0.5, 1.5]]])
     assert number_variance(corners, [2.0, 2.0], 2) == 0
     assert number_variance(0 * corners, [2.0, 2.0], 2) == 3  # 4, 0, 0, 0: variance 3, mean 1
 
 
-def test_clusters_by_hand_and_by_brute_force():
+def test_clusters_by_hand_and_by_brute_force() -> None:
     chain = np.array([[0.1, 0], [9.5, 0], [1.2, 0], [5, 5], [5, 5.9]])
     assert cluster_sizes(chain, [10.0, 10.0], 1.2).tolist() == [3, 2]
     random = np.random.default_rng(2)

@@ -10,7 +10,7 @@ SIGNS = np.array([1, -1, 1, -1])
 LANES = np.array([[[2.0, 0.5], [-2.0, 0.5], [2.0, -0.5], [-2.0, -0.5]]])  # (1, 4, 2)
 
 
-def test_lanes_at_constant_speed_by_hand():
+def test_lanes_at_constant_speed_by_hand() -> None:
     # sum v^2 = 4 (4 + 1/4) over 2 x 4; relative to the streams 4 / 4 over 2 (4 - 2)
     assert kinetic_temperature(LANES) == pytest.approx([17 / 8])
     assert stream_temperature(LANES, SIGNS) == pytest.approx([1 / 4])
@@ -18,7 +18,7 @@ def test_lanes_at_constant_speed_by_hand():
     assert current(LANES[:, :, 0], SIGNS).tolist() == [2]
 
 
-def test_temperatures_of_particles_of_unlike_masses():
+def test_temperatures_of_particles_of_unlike_masses() -> None:
     random = np.random.default_rng(0)
     masses = np.where(np.arange(50) % 2, 1.0, 3.0)
     velocities = random.normal(0, np.sqrt(0.8 / masses)[:, None], (4000, 50, 3))
@@ -40,14 +40,14 @@ def test_temperatures_of_particles_of_unlike_masses():
     assert relative[:3] == pytest.approx(brute)
 
 
-def test_mobility():
+def test_mobility() -> None:
     estimate = mobility([2.0, 4.0] * 8, 1.5)
     assert estimate.value == pytest.approx(2)
     with pytest.raises(ValueError, match="needs a field"):
         mobility([1.0], 0)
 
 
-def test_profiles_by_hand_and_by_brute_force():
+def test_profiles_by_hand_and_by_brute_force() -> None:
     heights = np.array([[0.1, 5.1, -9.0, 15.0]])  # in a box of 10: layers 0, 2, 0, 2 of 4
     y, counts, speeds = flow_profiles(heights, LANES[:, :, 0] * [[1, 1, 2, 2]], SIGNS, 10.0, 4)
     assert y.tolist() == [1.25, 3.75, 6.25, 8.75]
@@ -69,7 +69,7 @@ def test_profiles_by_hand_and_by_brute_force():
             assert speeds[kind, layer] == pytest.approx(np.mean(inside))
 
 
-def test_viscosity():
+def test_viscosity() -> None:
     assert viscosity([-3.0, -5.0] * 8, 2.0).value == 2
     with pytest.raises(ValueError, match="needs a flow"):
         viscosity([1.0], 0)

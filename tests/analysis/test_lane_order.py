@@ -24,7 +24,7 @@ def brute_force(positions, colours, lengths, axes):
 
 
 @pytest.mark.parametrize("lengths", [[9.0, 14.0], [4.0, 6.0, 9.0]])
-def test_brute_force(lengths):
+def test_brute_force(lengths) -> None:
     random = np.random.default_rng(0)
     positions = random.uniform(-10, 20, (3, 60, len(lengths)))
     colours = np.arange(60) < 4  # few of one colour, so that phi is neither 0 nor 1
@@ -46,7 +46,7 @@ def stripes(axis, dimension=2):
 
 
 @pytest.mark.parametrize("dimension", [2, 3])
-def test_lanes_along_the_field_and_the_erratum(dimension):
+def test_lanes_along_the_field_and_the_erratum(dimension) -> None:
     """Two lanes along x: the lateral distance sees them, the printed one, along x, does not."""
     positions, lengths = stripes(1, dimension)
     assert lane_order(positions, COLOURS, lengths).tolist() == [1] * 4
@@ -56,7 +56,7 @@ def test_lanes_along_the_field_and_the_erratum(dimension):
     assert lane_order(bands, COLOURS, lengths).max() < 0.1
 
 
-def test_a_well_mixed_gas():
+def test_a_well_mixed_gas() -> None:
     """None of 448 particles of the other colour within a spacing: (1 - 2/sqrt(896))^448."""
     random = np.random.default_rng(2)
     lengths = np.sqrt([896.0, 896.0])
@@ -65,13 +65,13 @@ def test_a_well_mixed_gas():
     assert order.mean() < 1e-3
 
 
-def test_the_distance_is_periodic():
+def test_the_distance_is_periodic() -> None:
     # one pair, 9.5 apart across a box of 10, spacing sqrt(50): 0.5 through the boundary
     positions = np.array([[[0.0, 0.2], [5.0, 9.7]]])
     assert lane_order(positions, [1, -1], [10.0, 10.0]).tolist() == [0]
     assert lane_order_printed(positions, [1, -1], [10.0, 10.0]).tolist() == [0]
 
 
-def test_one_colour_is_refused():
+def test_one_colour_is_refused() -> None:
     with pytest.raises(ValueError, match="1 colours: lanes need two"):
         lane_order(np.zeros((1, 2, 2)), [1, 1], [10.0, 10.0])

@@ -9,7 +9,7 @@ from srd_driver.reference.soft_pairs import SoftPairs
 
 @pytest.mark.parametrize("potential", [SoftDisk(cutoff=1.9), WeeksChandlerAndersen()])
 @pytest.mark.parametrize("dimension", [2, 3])
-def test_brute_force(potential, dimension):
+def test_brute_force(potential, dimension) -> None:
     """Against the reference, which looks at every pair."""
     random = np.random.default_rng(4)
     lengths = np.array([5.0, 6.0, 4.5])[:dimension]
@@ -24,7 +24,7 @@ def test_brute_force(potential, dimension):
         assert series.laplacians[t] == pytest.approx(sums.laplacian)
 
 
-def test_two_soft_disks_by_hand():
+def test_two_soft_disks_by_hand() -> None:
     # at r = 1: phi = 1, force 12, virial 12 over 2 x 100, Laplacian of each 144
     positions = np.array([[[0.5, 3.0], [9.5, 3.0]]])
     potential = SoftDisk(shifted=False)
@@ -35,19 +35,19 @@ def test_two_soft_disks_by_hand():
     assert series.laplacians == pytest.approx([288])
 
 
-def test_a_box_in_which_pairs_would_meet_twice_is_refused():
+def test_a_box_in_which_pairs_would_meet_twice_is_refused() -> None:
     with pytest.raises(ValueError, match="more than half the box"):
         pair_sums(np.zeros((1, 2, 2)), [3.0, 10.0], SoftDisk().derivatives, 2.0)
 
 
-def test_a_ratio_of_means_is_not_the_mean_ratio():
+def test_a_ratio_of_means_is_not_the_mean_ratio() -> None:
     estimate = ratio_of_means(np.array([1.0, 3.0]), np.array([1.0, 7.0]))
     assert estimate.value == 0.5
     with pytest.raises(ValueError, match="denominator is zero"):
         ratio_of_means(np.ones(3), np.zeros(3))
 
 
-def test_the_error_of_a_ratio_covers_it():
+def test_the_error_of_a_ratio_covers_it() -> None:
     """Particles in a harmonic trap of stiffness k: sum F^2 = k^2 r^2, Laplacian k D."""
     random = np.random.default_rng(5)
     off = []

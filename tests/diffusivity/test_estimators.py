@@ -48,7 +48,7 @@ ESTIMATORS = [
 
 
 @pytest.mark.parametrize("make", ESTIMATORS, ids=["color", "first passage"])
-def test_error_bars_cover_the_truth(path, make):
+def test_error_bars_cover_the_truth(path, make) -> None:
     inside, ratio = coverage(path, make)
     assert inside > 0.88  # 12 walks of correlated bins: 0.95 +- 0.03
     assert ratio == pytest.approx(1, abs=0.07)
@@ -56,13 +56,13 @@ def test_error_bars_cover_the_truth(path, make):
 
 @pytest.mark.statistics
 @pytest.mark.parametrize("make", ESTIMATORS, ids=["color", "first passage"])
-def test_error_bars_cover_the_truth_in_95_of_100(make):
+def test_error_bars_cover_the_truth_in_95_of_100(make) -> None:
     inside, ratio = coverage(walks.walk(60 * WALKERS, 3000, seed=5), make)
     assert inside == pytest.approx(0.95, abs=0.03)
     assert ratio == pytest.approx(1, abs=0.05)
 
 
-def test_bayesian_profile_and_its_lags(path):
+def test_bayesian_profile_and_its_lags(path) -> None:
     """Short lags are biased by the bins' width, which diffusion must outgrow; long ones are noisy.
 
     At 0.4, where the root mean square displacement is 3.5 bins, the bars hold the truth.
@@ -83,7 +83,7 @@ def test_bayesian_profile_and_its_lags(path):
     assert results.error == pytest.approx(results.errors_by_lag[1], rel=0.4)
 
 
-def test_likelihood_is_that_of_the_exponential_and_its_gradient():
+def test_likelihood_is_that_of_the_exponential_and_its_gradient() -> None:
     from scipy.linalg import expm
 
     random = np.random.default_rng(0)
@@ -106,7 +106,7 @@ def test_likelihood_is_that_of_the_exponential_and_its_gradient():
         assert gradient[n] == pytest.approx(difference, rel=1e-6)
 
 
-def test_local_derivative_of_a_cubic_is_exact():
+def test_local_derivative_of_a_cubic_is_exact() -> None:
     x = np.linspace(0, 3, 61)
     weights = np.random.default_rng(0).uniform(0.1, 2, 61)
     slopes = local_derivative(x, 2 - x + x**3, weights, 0.3)
@@ -114,7 +114,7 @@ def test_local_derivative_of_a_cubic_is_exact():
     assert np.isnan(local_derivative(x, x, weights * (x < 0.2), 0.3)[:4]).all()
 
 
-def test_jackknife_of_a_mean():
+def test_jackknife_of_a_mean() -> None:
     data = np.random.default_rng(1).normal(size=(10, 4))
     value, error = jackknife(lambda total: total / 10, data)
     assert value == pytest.approx(data.mean(axis=0))
@@ -135,7 +135,7 @@ def steady_pairs(blocks=6):
     return r, width, repeat * number, repeat * colored, 2 * repeat[:, 0]
 
 
-def test_erratum_3_printed_pair_formula_fails_and_the_corrected_holds():
+def test_erratum_3_printed_pair_formula_fails_and_the_corrected_holds() -> None:
     """(3) of carmer-2012 has dx/dr - 2x/r, which makes D(r) negative; with dx/dr it is exact."""
     r, width, number, colored, rate = steady_pairs()
     true = 1 - 0.5 / r
@@ -152,7 +152,7 @@ def test_erratum_3_printed_pair_formula_fails_and_the_corrected_holds():
     assert flux / (density * -slope) == pytest.approx(true, rel=2e-3)
 
 
-def test_erratum_3_printed_form_is_exact_for_weighted_quantities():
+def test_erratum_3_printed_form_is_exact_for_weighted_quantities() -> None:
     """With y = r^2 x and r^2 j for x and j the printed form is the corrected one."""
     r, _width, number, colored, _rate = steady_pairs()
     x = colored[0] / number[0]
@@ -161,7 +161,7 @@ def test_erratum_3_printed_form_is_exact_for_weighted_quantities():
     assert slope == pytest.approx(r**2 * local_derivative(r, x, number[0], 0.1), rel=2e-2)
 
 
-def test_pair_distances_are_those_of_nearest_images():
+def test_pair_distances_are_those_of_nearest_images() -> None:
     positions = np.array([[[0.5, 5, 5], [9.5, 5, 5], [5, 5, 5], [5, 5, 9.0]]], dtype=np.float32)
     made = MDAnalysis.Universe.empty(4, trajectory=True)
     made.load_new(positions, format=MemoryReader, dimensions=[10, 10, 10, 90, 90, 90])
@@ -191,12 +191,12 @@ BAD = [
 
 
 @pytest.mark.parametrize(("make", "message"), BAD)
-def test_bad_input_is_named(make, message):
+def test_bad_input_is_named(make, message) -> None:
     with pytest.raises(DiffusivityError, match=message):
         make()
 
 
-def test_too_few_crossings_are_counted_in_the_message():
+def test_too_few_crossings_are_counted_in_the_message() -> None:
     z = np.full((40, 6), 0.5)
     z[:, 1], z[:, 2:] = 1.5, 2.5
     z[20:, 2] = 1.5

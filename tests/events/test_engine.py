@@ -11,7 +11,7 @@ def slit(seed=1, count=200, reactions=None):
     return HardSpheres.fluid(count, [7.0, 6.5, 5.0], walls=(2,), reactions=reactions, seed=seed)
 
 
-def test_head_on_collision_of_two():
+def test_head_on_collision_of_two() -> None:
     engine = HardSpheres([[1, 5, 5], [4, 5, 5]], [[1, 0, 0], [-1, 0, 0]], [10, 10, 10])
     engine.advance(0.99)
     assert engine.collisions == 0
@@ -22,7 +22,7 @@ def test_head_on_collision_of_two():
     assert engine.virial == pytest.approx(2.0)  # sigma |u|
 
 
-def test_oblique_collision_of_two_disks():
+def test_oblique_collision_of_two_disks() -> None:
     """Centres at 60 degrees at contact: the component along them changes hands."""
     y = np.sqrt(3) / 2
     engine = HardSpheres([[1, 5], [5, 5 + y]], [[2, 0], [0, 0]], [10, 10])
@@ -32,21 +32,21 @@ def test_oblique_collision_of_two_disks():
     assert engine.velocities[0] == pytest.approx(np.array([2, 0]) - 2 * 0.5 * normal)
 
 
-def test_collision_through_a_periodic_face_and_its_images():
+def test_collision_through_a_periodic_face_and_its_images() -> None:
     engine = HardSpheres([[1, 5, 5], [9, 5, 5]], [[-1, 0, 0], [1, 0, 0]], [10, 10, 10])
     engine.advance(1.5)  # 2 apart through the face: contact after 0.5
     assert engine.collisions == 1
     assert engine.positions[:, 0] == pytest.approx([1.5, 8.5])
 
 
-def test_images_unwrap_the_path():
+def test_images_unwrap_the_path() -> None:
     engine = HardSpheres([[1, 5, 5]], [[2.5, -1, 0]], [10, 10, 10])
     engine.advance(10)
     assert engine.images.tolist() == [[2, -1, 0]]
     assert engine.positions + 10 * engine.images == pytest.approx(np.array([[26, -5, 5]]))
 
 
-def test_three_in_a_row_pass_the_velocity_on():
+def test_three_in_a_row_pass_the_velocity_on() -> None:
     start = [[2.0, 5, 5], [4.0, 5, 5], [7.0, 5, 5]]
     engine = HardSpheres(start, [[1, 0, 0], [0, 0, 0], [0, 0, 0]], [20, 10, 10])
     engine.advance(1 + 2 + 0.5)  # gaps of 1 and 2
@@ -55,7 +55,7 @@ def test_three_in_a_row_pass_the_velocity_on():
     assert engine.positions[:, 0] == pytest.approx([3.0, 6.0, 7.5])
 
 
-def test_a_sphere_between_walls_is_there_and_back():
+def test_a_sphere_between_walls_is_there_and_back() -> None:
     engine = HardSpheres([[5, 5, 1.5]], [[0, 0, 2.0]], [10, 10, 4], walls=(2,))
     engine.advance(1 + 1.5 + 0.25)  # up 2, down 3, up 0.5
     assert engine.wall_hits == 2
@@ -65,7 +65,7 @@ def test_a_sphere_between_walls_is_there_and_back():
 
 @pytest.mark.parametrize("dimensions", [2, 3])
 @pytest.mark.parametrize("walls", [(), (0,), (1,), (0, 1)])
-def test_trajectory_of_brute_force(dimensions, walls):
+def test_trajectory_of_brute_force(dimensions, walls) -> None:
     lengths = [6.0, 5.0, 5.5][:dimensions]
     count = 14 if dimensions == 2 else 50
     engine = HardSpheres.fluid(count, lengths, walls, seed=3)
@@ -81,7 +81,7 @@ def test_trajectory_of_brute_force(dimensions, walls):
     assert engine.velocities == pytest.approx(brute.velocities, abs=1e-6)
 
 
-def test_chances_of_the_brute_force_wall_hits():
+def test_chances_of_the_brute_force_wall_hits() -> None:
     """q by the rule, from an independent list of who hit which wall when."""
     p = [0.1, 1.0]
     engine = slit(count=60, reactions=WallReactions(p))
@@ -100,7 +100,7 @@ def test_chances_of_the_brute_force_wall_hits():
     assert engine.take_profile().reactions[:, 1] == pytest.approx(expected)
 
 
-def test_cutting_and_looking_change_no_bit(tmp_path):
+def test_cutting_and_looking_change_no_bit(tmp_path) -> None:
     whole, cut = slit(reactions=WallReactions([0.3])), slit(reactions=WallReactions([0.3]))
     whole.advance_to(5.0)
     for time in (0.013, 1.0, 1.7, 4.2):
@@ -116,7 +116,7 @@ def test_cutting_and_looking_change_no_bit(tmp_path):
     assert whole.collisions == cut.collisions > 1000
 
 
-def test_loading_gives_the_bits_of_not_stopping(tmp_path):
+def test_loading_gives_the_bits_of_not_stopping(tmp_path) -> None:
     reactions = PairReactions([0.2, 0.7], centers=[0, 5], cutoff=2.6)
     engine = HardSpheres.fluid(120, [6, 6, 6], reactions=reactions, seed=2)
     engine.advance(1.0)
@@ -133,12 +133,12 @@ def test_loading_gives_the_bits_of_not_stopping(tmp_path):
                 assert np.array_equal(a[name], b[name]), name
 
 
-def test_seeds():
+def test_seeds() -> None:
     assert np.array_equal(slit(1).positions, slit(1).positions)
     assert not np.array_equal(slit(1).velocities, slit(2).velocities)
 
 
-def test_energy_momentum_and_no_overlap():
+def test_energy_momentum_and_no_overlap() -> None:
     engine = slit(count=180)  # packing 0.41
     momentum = engine.velocities.sum(axis=0)[:2]
     energy = engine.energy()
@@ -154,7 +154,7 @@ def test_energy_momentum_and_no_overlap():
     assert engine.velocities.sum(axis=0)[:2] == pytest.approx(momentum, abs=1e-11)
 
 
-def test_chance_is_the_mean_label_over_lots():
+def test_chance_is_the_mean_label_over_lots() -> None:
     """The same trajectory with 400 seeds of the lots; walls and pairs."""
     for reactions, box, walls in (
         (WallReactions([0.1, 0.5]), [6, 6, 5], (2,)),
@@ -179,7 +179,7 @@ def test_chance_is_the_mean_label_over_lots():
         assert np.sqrt(np.mean(deviation**2)) == pytest.approx(1, abs=0.2)
 
 
-def test_pairs_enter_the_cutoff_when_a_fine_clock_says_so():
+def test_pairs_enter_the_cutoff_when_a_fine_clock_says_so() -> None:
     """Visits to R_cut, against positions looked at many times in a mean free flight."""
     reactions = PairReactions([0.5], centers=[0, 7], cutoff=2.5)
     engine = HardSpheres.fluid(80, [6.0, 6.0, 6.0], seed=4, reactions=reactions)
@@ -222,14 +222,14 @@ BAD = [
 
 
 @pytest.mark.parametrize(("changes", "message"), BAD)
-def test_bad_systems_are_refused(changes, message):
+def test_bad_systems_are_refused(changes, message) -> None:
     system = {"positions": [[5.0, 5.0, 5.0]], "lengths": [10.0, 10.0, 10.0]} | changes
     system.setdefault("velocities", np.ones_like(system["positions"], dtype=float))
     with pytest.raises(EventError, match=message):
         HardSpheres(**system)
 
 
-def test_what_does_not_fit_is_refused():
+def test_what_does_not_fit_is_refused() -> None:
     with pytest.raises(EventError, match=r"400 spheres .* \(packing fraction 0.931\) do not fit"):
         HardSpheres.fluid(400, [6.0, 7.5, 5.0], walls=(2,))
     with pytest.raises(EventError, match="count: 0; at least 1"):
@@ -240,7 +240,7 @@ def test_what_does_not_fit_is_refused():
 
 @pytest.mark.parametrize("packing", [0.05, 0.35, 0.45])
 @pytest.mark.parametrize("walls", [(), (2,), (0, 2)])
-def test_initial_states_fit(packing, walls):
+def test_initial_states_fit(packing, walls) -> None:
     lengths = np.array([12.3, 11.1, 9.7])
     count = int(packing * lengths.prod() / (np.pi / 6))
     engine = HardSpheres.fluid(count, lengths, walls, seed=5)

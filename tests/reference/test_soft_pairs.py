@@ -37,7 +37,7 @@ def derivative(function, positions: np.ndarray, step: float = 1e-5) -> np.ndarra
 @pytest.mark.parametrize("potential", POTENTIALS, ids=lambda p: type(p).__name__)
 @pytest.mark.parametrize("dimension", [2, 3])
 @pytest.mark.parametrize("offset", [0.0, 1.7])
-def test_gradients_are_finite_differences(potential, dimension, offset):
+def test_gradients_are_finite_differences(potential, dimension, offset) -> None:
     pairs = SoftPairs(potential, LENGTHS[dimension])
     x = fluid(dimension)
     sums = pairs.sums(x, offset)
@@ -58,7 +58,7 @@ def test_gradients_are_finite_differences(potential, dimension, offset):
     assert sums.temperature_gradient.sum(axis=0) == pytest.approx(0, abs=1e-9 * scale)
 
 
-def test_two_soft_disks_by_hand():
+def test_two_soft_disks_by_hand() -> None:
     # r = 1 along x: u = 1, force 12, phi'' = 156; Laplacian of each 156 - 12 = 144
     sums = SoftPairs(SoftDisk(shifted=False), [10.0, 10.0]).sums(np.array([[0.5, 0], [-0.5, 0]]))
     assert sums.energy == 1
@@ -70,7 +70,7 @@ def test_two_soft_disks_by_hand():
     assert sums.temperature_gradient == pytest.approx(np.array([[-12, 0], [12, 0]]))
 
 
-def test_a_sheared_cell_moves_the_upper_image():
+def test_a_sheared_cell_moves_the_upper_image() -> None:
     pairs = SoftPairs(SoftDisk(), [5.0, 5.0])
     x = np.array([[1.0, 0.1], [3.0, 4.9]])
     assert pairs.sums(x).energy == 0
@@ -78,6 +78,6 @@ def test_a_sheared_cell_moves_the_upper_image():
     assert pairs.separations(x, 3.0)[2] == pytest.approx(np.array([[1.0, 0.2]]))
 
 
-def test_a_cell_in_which_pairs_would_meet_twice_is_refused():
+def test_a_cell_in_which_pairs_would_meet_twice_is_refused() -> None:
     with pytest.raises(ValueError, match=r"less than twice 2\.0"):
         SoftPairs(SoftDisk(), [10.0, 3.9])

@@ -17,7 +17,7 @@ def squares(run: Isokinetic) -> float:
 
 
 @pytest.mark.parametrize(("held", "rate"), [((0, 1), 0.0), ((0,), 0.0), ((1,), 0.0), ((0, 1), 2.0)])
-def test_the_kinetic_energy_of_what_is_held_is_constant_to_rounding(held, rate):
+def test_the_kinetic_energy_of_what_is_held_is_constant_to_rounding(held, rate) -> None:
     run = Isokinetic(*STATE, held, rate)
     for _ in range(200):
         run.step(0.002)
@@ -26,7 +26,7 @@ def test_the_kinetic_energy_of_what_is_held_is_constant_to_rounding(held, rate):
 
 
 @pytest.mark.parametrize("held", [(0, 1), (1,)])
-def test_the_isokinetic_step_is_reversible(held):
+def test_the_isokinetic_step_is_reversible(held) -> None:
     run = Isokinetic(*STATE, held)
     run.step(1e-9)  # onto the constraint
     positions, velocities = run.positions.copy(), run.velocities.copy()
@@ -40,7 +40,7 @@ def test_the_isokinetic_step_is_reversible(held):
     assert run.velocities == pytest.approx(-velocities, abs=1e-10)
 
 
-def test_a_kick_solves_its_equation():
+def test_a_kick_solves_its_equation() -> None:
     """Against (2) and (3) with constant forces in 2000 small steps."""
     random = np.random.default_rng(3)
     v, f, m = random.normal(size=(5, 2)), random.normal(size=(5, 2)), random.uniform(1, 2, 5)
@@ -111,7 +111,7 @@ class Isothermal:
 
 @pytest.mark.parametrize("kind", ["kinetic", "configurational"])
 @pytest.mark.parametrize("rate", [0.0, 1.5])
-def test_splitting_and_gear_converge_to_one_trajectory(kind, rate):
+def test_splitting_and_gear_converge_to_one_trajectory(kind, rate) -> None:
     """The splitting with the square of the step, Gear's method faster; both to the same end."""
     equations = Isothermal(kind, rate)
     time = 0.032
@@ -126,7 +126,7 @@ def test_splitting_and_gear_converge_to_one_trajectory(kind, rate):
     assert fine < 0.2 * error(equations.split, 0.001)
 
 
-def test_gear_is_exact_for_a_polynomial_of_its_order():
+def test_gear_is_exact_for_a_polynomial_of_its_order() -> None:
     """dy/dt = 4 t^3 with t as a second unknown: y = t^4."""
     run = Gear(lambda y: np.array([4 * y[1] ** 3, 1.0]), np.zeros(2), 0.1)
     for _ in range(10):
@@ -134,7 +134,7 @@ def test_gear_is_exact_for_a_polynomial_of_its_order():
     assert run.y == pytest.approx([1, 1], abs=1e-12)
 
 
-def test_the_configurational_thermostat_leaves_momentum_alone():
+def test_the_configurational_thermostat_leaves_momentum_alone() -> None:
     run = Configurational(*STATE)
     momentum = (run.masses[:, None] * run.velocities).sum(axis=0)
     for _ in range(100):
