@@ -182,7 +182,12 @@ class Simulation:
 
     def _record(self, checkpoint: str, wall_seconds: float) -> Progress:
         """Leave word of a checkpoint that is written whole, and of what the outputs hold by now."""
-        written = {file: output.checksum() for file, output in self._outputs.items()}
+        written = {  # what the engine reads stays as it is
+            file: checksum
+            for file, checksum in self._progress.checksums.items()
+            if file != self._progress.checkpoint
+        }
+        written |= {file: output.checksum() for file, output in self._outputs.items()}
         written[checkpoint] = Checksum.of_file(self.directory / checkpoint)
         for file in written:
             reach_disk(self.directory / file)

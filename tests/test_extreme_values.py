@@ -108,7 +108,7 @@ def test_what_takes_too_much_is_refused_with_how_much(
         (["check", LATTICE, "--sites", "1000"], "need 1e479 bytes of memory"),
         (["check", LATTICE, "--sites", "40"], "bytes of memory"),
         (["simulate", LATTICE, "--replicas", "1000000"], "bytes of memory"),
-        (["hydro", LATTICE, "--times", "1e9"], "years"),
+        (["hydro", LATTICE, "--times", "1e9", "--cells", "10000"], "years"),
         (["hydro", LATTICE, "--times", "1e300"], "must be between 0 and 1e+09"),
     ],
 )
