@@ -7,7 +7,7 @@ from numpy.typing import NDArray
 from scipy.linalg import cholesky_banded, solve_banded
 from scipy.optimize import minimize_scalar
 
-from analysis.blocking import Estimate
+from analysis.estimate import Estimate
 from analysis.flow import momentum_profile
 
 Array = NDArray[np.float64]
