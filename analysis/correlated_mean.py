@@ -40,7 +40,7 @@ def mean(series: Runs, interval: float | None = None) -> Estimate:
     runs = _as_runs(series)
     if not runs:
         return Estimate(None, None, "no samples")
-    samples = np.concatenate(runs)
+    samples = runs[0] if len(runs) == 1 else np.concatenate(runs)
     if not np.isfinite(samples).all():
         raise ValueError("a sample is not finite")
     value = float(samples.mean())
@@ -129,9 +129,10 @@ def function_of_means(
 
 def _as_runs(series: Runs) -> list[Array]:
     """One run or several as a list of arrays, without empty ones."""
-    items = list(series) if isinstance(series, list | tuple) else [*np.asarray(series)]
-    rows = items if items and np.ndim(items[0]) > 0 else [items]
-    runs = [np.asarray(row, dtype=float) for row in rows]
+    if isinstance(series, list | tuple) and len(series) and np.ndim(series[0]) > 0:
+        runs = [np.asarray(run, dtype=float) for run in series]
+    else:
+        runs = [*np.atleast_2d(np.asarray(series, dtype=float))]
     if any(run.ndim != 1 for run in runs):
         raise ValueError("a run is a one-dimensional series of samples")
     return [run for run in runs if len(run)]
