@@ -100,11 +100,9 @@ def _title(scene: Scene) -> Iterator[str]:
 def _variables(system: System, seeds: dict[str, int]) -> Iterator[str]:
     """What `-var` changes, checked, and a file that tells what it made of them."""
     clock = system.clock
-    for drive in system.drives:
-        yield (
-            f"variable {drive.variable} index {drive.magnitude!r} "
-            f"# acceleration of the {drive.target} along {_direction(drive.direction)}"
-        )
+    for variable, drives in system.drive_variables().items():
+        pulled = ", ".join(f"{each.target} along {_direction(each.direction)}" for each in drives)
+        yield f"variable {variable} index {drives[0].magnitude!r} # acceleration of the {pulled}"
     yield f"variable steps index {clock.total_steps} # of time {clock.time_step:.6g}"
     yield f"variable sample index {clock.sample_steps} # steps between two outputs"
     for name, seed in seeds.items():
@@ -115,7 +113,7 @@ def _variables(system: System, seeds: dict[str, int]) -> Iterator[str]:
         '"quit 1"'
     )
     told = ['"total_steps": ${steps}', '"sample_steps": ${sample}']
-    told += [f'"{drive.variable}": ${{{drive.variable}}}' for drive in system.drives]
+    told += [f'"{variable}": ${{{variable}}}' for variable in system.drive_variables()]
     yield "print '{" + ", ".join(told) + "}' file variables.json screen no # what -var made of them"
 
 

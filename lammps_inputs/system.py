@@ -361,6 +361,13 @@ class System:
         """The potential of each species that interacts with the fluid."""
         return {i.first: i.potential for i in self.interactions if i.second == FLUID}
 
+    def drive_variables(self) -> dict[str, list[Drive]]:
+        """The drives that each variable of the deck holds, all of its magnitude."""
+        variables: dict[str, list[Drive]] = {}
+        for drive in self.drives:
+            variables.setdefault(drive.variable, []).append(drive)
+        return variables
+
     def drives_on(self, target: str) -> Iterator[Drive]:
         """The drives on a species, or on the `FLUID`."""
         return (drive for drive in self.drives if drive.target == target)

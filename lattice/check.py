@@ -8,6 +8,7 @@ from typing import Any
 import numpy as np
 
 from lattice import generator, shocks
+from lattice.hydrodynamics import domain_wall_profile
 from lattice.models import LatticeGas, RateError, Vector
 
 
@@ -19,8 +20,11 @@ class Report:
     where the statement holds.  Pairs are (left, right); rates and currents in inverse units of
     time, velocity in sites per unit of time, positive to the right.  Fields that need a shock are
     None if z1 = z2, those that need ends on a ring too; the hopping rates are the nonnegative
-    least-squares solution where `random_walk_residual` does not vanish.  `stationary_profile` is
-    None if more than one stationary state can be reached, which `remarks` then says.
+    least-squares solution where `random_walk_residual` does not vanish.  `stationary_profile`, by
+    site, `stationary_currents`, over each bond, and `stationary_correlation`, the largest connected
+    correlation of C at two sites, are None if more than one stationary state can be reached, which
+    `remarks` then says.  `domain_wall_profile` is rho_C by site in the mixture of shock measures
+    that the random walk leads to: where the shock does not close, an approximation.
     """
 
     stationarity_residual: float
@@ -34,6 +38,9 @@ class Report:
     currents: tuple[float, float]
     densities: dict[str, tuple[float, float]]
     stationary_profile: dict[str, list[float]] | None
+    stationary_currents: dict[str, list[float]] | None
+    stationary_correlation: float | None
+    domain_wall_profile: list[float] | None
     conditions: list[shocks.Condition]
     inconsistent_ends: list[shocks.Condition]
     remarks: list[str]
@@ -88,6 +95,7 @@ def check(
     else:
         exact = closed and walk_residual is not None and walk_residual < shocks.HOLDS
         positions = _mean_positions(model, walk, z1, z2, start, times, exact=bool(exact))
+    stationary = _stationary_state(model, sites, z1, z2, remarks)
     return Report(
         stationarity_residual=stationarity,
         random_walk_residual=walk_residual,
@@ -99,7 +107,14 @@ def check(
         shock_diffusion=None if walk is None else walk.diffusion,
         currents=(model.current(z1), model.current(z2)),
         densities=densities,
-        stationary_profile=_profile(model, sites, z1, z2, remarks),
+        stationary_profile=None if stationary is None else _profile(model, sites, stationary),
+        stationary_currents=None if stationary is None else _currents(model, sites, stationary),
+        stationary_correlation=(
+            None if stationary is None else _largest_correlation(model, sites, stationary)
+        ),
+        domain_wall_profile=(
+            None if walk is None else domain_wall_profile(model, walk, z1, z2).tolist()
+        ),
         conditions=conditions,
         inconsistent_ends=_contradictions(model, z1, z2, ends),
         remarks=remarks,
@@ -107,16 +122,32 @@ def check(
     )
 
 
-def _profile(
+def _stationary_state(
     model: LatticeGas, sites: int, z1: float, z2: float, remarks: list[str]
-) -> dict[str, list[float]] | None:
-    """rho_A and rho_B by site in the stationary state that the shock measures lead to."""
+) -> Vector | None:
+    """The stationary state that the shock measures lead to."""
     start = shocks.shock_vector(model, sites, sites // 2, z1, z2)
     try:
-        state = generator.stationary_state(model, sites, start)
+        return generator.stationary_state(model, sites, start)
     except generator.NoUniqueState as error:
         remarks.append(str(error))
         return None
+
+
+def _currents(model: LatticeGas, sites: int, state: Vector) -> dict[str, list[float]]:
+    """Currents of C and of each species over the bonds, by name."""
+    currents = {"C": generator.bond_currents(model, sites, state)}
+    currents |= generator.species_currents(model, sites, state)
+    return {name: current.tolist() for name, current in currents.items()}
+
+
+def _largest_correlation(model: LatticeGas, sites: int, state: Vector) -> float:
+    correlation = generator.connected_correlation(model, sites, state)
+    return float(np.abs(correlation - np.diag(np.diag(correlation))).max())
+
+
+def _profile(model: LatticeGas, sites: int, state: Vector) -> dict[str, list[float]]:
+    """rho_A and rho_B by site."""
     single = generator.site_probabilities(model, sites, state)
     return {
         f"rho_{name}": single[:, n].tolist() for n, name in enumerate(model.states) if name != "0"

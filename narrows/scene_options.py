@@ -5,11 +5,11 @@ from typing import Annotated, Any
 
 import typer
 
-from lammps_inputs import Scene, SceneError, engines, make_scene, parse_assignment, scenes
+from lammps_inputs import Scene, SceneError, all_engines, all_scenes, make_scene, parse_assignment
 from lammps_inputs.engines.engine import LammpsEngine
 from lammps_inputs.scene import read_scene
 
-SceneName = Annotated[str, typer.Argument(metavar="SCENE", help=" or ".join(scenes()))]
+SceneName = Annotated[str, typer.Argument(metavar="SCENE", help=" or ".join(all_scenes()))]
 SceneFile = Annotated[
     Path | None, typer.Option("--scene", metavar="FILE.toml", help="fields of the scene")
 ]
@@ -17,8 +17,8 @@ Settings = Annotated[
     list[str] | None,
     typer.Option("--set", metavar="FIELD=VALUE", help="one field; wins over the file"),
 ]
-ENGINES = "|".join(engines())
-DECKS = "|".join(name for name, each in engines().items() if isinstance(each, LammpsEngine))
+ENGINES = "|".join(all_engines())
+DECKS = "|".join(name for name, each in all_engines().items() if isinstance(each, LammpsEngine))
 
 
 def scene_of(

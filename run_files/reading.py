@@ -54,14 +54,30 @@ def read_json(path: Path) -> dict[str, Any]:
     Raises:
         RunDirectoryError: when it is missing, damaged, or not an object.
     """
-    text = read_text(path)
-    try:
-        content = json.loads(text)
-    except (ValueError, RecursionError) as error:
-        refuse(path, f"not JSON: {error}")
+    content = _parse_json(path)
     if not isinstance(content, dict):
         refuse(path, "not a JSON object")
     return content
+
+
+def read_json_list(path: Path) -> list[dict[str, Any]]:
+    """The objects of a JSON file that lists them.
+
+    Raises:
+        RunDirectoryError: when it is missing, damaged, or not a list of objects.
+    """
+    content = _parse_json(path)
+    if not isinstance(content, list) or not all(isinstance(entry, dict) for entry in content):
+        refuse(path, "not a JSON list of objects")
+    return content
+
+
+def _parse_json(path: Path) -> Any:
+    text = read_text(path)
+    try:
+        return json.loads(text)
+    except (ValueError, RecursionError) as error:  # integers of thousands of digits are the former
+        refuse(path, f"not JSON: {error}")
 
 
 def read_toml(path: Path) -> dict[str, Any]:

@@ -15,6 +15,7 @@ if os.environ.get("CI"):
 
 COMMANDS = Path(sys.executable).parent
 ROOT = Path(__file__).parent.parent
+PASSED_ON = ("NARROWS_SCENES",)
 
 Run = Callable[..., subprocess.CompletedProcess[str]]
 
@@ -35,6 +36,7 @@ def command() -> Run:
         else:
             line = [str(COMMANDS / program), *arguments]
         environment = {"PYTHONPATH": str(ROOT), "PATH": f"{COMMANDS}:/usr/bin:/bin"}
+        environment |= {name: os.environ[name] for name in PASSED_ON if name in os.environ}
         done = subprocess.run(
             line, cwd=cwd, env=environment, capture_output=True, text=True, check=False
         )

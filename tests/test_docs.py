@@ -1,5 +1,7 @@
 """The pages: links lead somewhere, and what docs/theory.md names is in the code."""
 
+import doctest
+import importlib
 import re
 from pathlib import Path
 
@@ -8,6 +10,13 @@ import pytest
 from tests.conftest import ROOT
 
 PAGES = [ROOT / "README.md", *sorted((ROOT / "docs").glob("*.md"))]
+PACKAGES = ("lammps_inputs", "srd_driver", "run_files", "analysis", "lattice", "narrows")
+WITH_EXAMPLES = [
+    ".".join(path.relative_to(ROOT).with_suffix("").parts)
+    for package in PACKAGES
+    for path in sorted((ROOT / package).rglob("*.py"))
+    if "\n    >>> " in path.read_text(encoding="utf-8")
+]
 LINK = re.compile(r"\]\(([^)\s]+)\)")
 HEADING = re.compile(r"^#+ (.*)$", re.MULTILINE)
 
@@ -47,3 +56,16 @@ def test_what_the_theory_page_names_is_there() -> None:
             else:
                 defined = rf"^(?!\s*return )[\w<>:&* ]*[\w>&*] {name}\b\s*(?:[({{:]|$)"
             assert re.search(defined, code, re.MULTILINE), f"{path}::{name}"
+
+
+@pytest.mark.parametrize("module", WITH_EXAMPLES)
+def test_examples_in_docstrings(module: str) -> None:
+    found = doctest.testmod(importlib.import_module(module))
+    assert found.attempted > 0
+    assert found.failed == 0
+
+
+def test_the_python_of_the_readme(capsys: pytest.CaptureFixture[str]) -> None:
+    (block,) = re.findall(r"^```python\n(.*?)^```$", PAGES[0].read_text(), re.MULTILINE | re.DOTALL)
+    exec(compile(block, "README.md", "exec"), {})
+    assert len(capsys.readouterr().out.strip().splitlines()) == 5  # a line a colloid

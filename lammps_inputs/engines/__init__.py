@@ -14,7 +14,7 @@ DEFAULT = "mpc"
 
 
 @cache
-def engines() -> dict[str, Engine]:
+def all_engines() -> dict[str, Engine]:
     """All engines by name, the default one first."""
     modules = (
         importlib.import_module(f"{__name__}.{file.name}")
@@ -30,9 +30,9 @@ def engine_named(name: str) -> Engine:
     Raises:
         SceneError: for an unknown name.
     """
-    if name not in engines():
-        raise SceneError.of_field("engine", name, f"must be one of {', '.join(engines())}")
-    return engines()[name]
+    if name not in all_engines():
+        raise SceneError.of_field("engine", name, f"must be one of {', '.join(all_engines())}")
+    return all_engines()[name]
 
 
 def lammps_engine_named(name: str) -> LammpsEngine:
@@ -43,6 +43,6 @@ def lammps_engine_named(name: str) -> LammpsEngine:
     """
     engine = engine_named(name)
     if not isinstance(engine, LammpsEngine):
-        known = [each.name for each in engines().values() if isinstance(each, LammpsEngine)]
+        known = [each.name for each in all_engines().values() if isinstance(each, LammpsEngine)]
         raise SceneError.of_field("engine", name, f"has no deck; {', '.join(known)} have one")
     return engine

@@ -4,7 +4,7 @@ from collections.abc import Iterable, Iterator, Sequence
 
 from lammps_inputs.engines.engine import Start
 from lammps_inputs.initial_state import InitialState
-from lammps_inputs.system import Drive, Interaction, Output, System, WallPotential
+from lammps_inputs.system import Interaction, Output, System, WallPotential
 
 FACES = {"lower": "lo", "upper": "hi"}
 
@@ -74,17 +74,12 @@ def wall_faces(system: System) -> list[tuple[str, str, WallPotential, list[str]]
 
 def drives(system: System) -> Iterator[str]:
     """The drives on species."""
-    for drive in system.drives:
-        if drive.target in system.types():
-            yield (
-                f"fix {drive.variable} {drive.target} gravity ${{{drive.variable}}} "
-                f"vector {vector(drive)}"
-            )
-
-
-def vector(drive: Drive) -> str:
-    """The direction, without needless decimals."""
-    return " ".join(f"{component:g}" for component in drive.direction)
+    for variable, together in system.drive_variables().items():
+        on_species = [drive for drive in together if drive.target in system.types()]
+        for drive in on_species:
+            name = variable if len(on_species) == 1 else f"{variable}_{drive.target}"
+            direction = " ".join(f"{component:.17g}" for component in drive.direction)
+            yield f"fix {name} {drive.target} gravity ${{{variable}}} vector {direction}"
 
 
 def window(system: System) -> str:

@@ -14,8 +14,8 @@ from lammps_inputs.system import SIZES, System, VelocityVerlet
 SKIN = 0.3  # of the neighbour list [a0]
 
 EXPRESSIONS = {
-    "temperature": "temp",
-    "potential_energy": "pe/atoms",
+    "temperature": "c_thermo_temp",
+    "potential_energy": "c_thermo_pe/atoms",
     "mean_velocity_x": "vcm(all,x)",
 }
 

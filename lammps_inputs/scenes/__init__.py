@@ -19,7 +19,7 @@ if os.environ.get(FOLDER_VARIABLE):
 
 
 @cache
-def scenes() -> dict[str, type[Scene]]:
+def all_scenes() -> dict[str, type[Scene]]:
     """All scenes by name."""
     known: dict[str, type[Scene]] = {}
     for file in pkgutil.iter_modules(__path__):
@@ -36,6 +36,6 @@ def make_scene(name: str, **fields: Any) -> Scene:
     Raises:
         SceneError: for an unknown name, or naming each wrong field, its value and what is allowed.
     """
-    if name not in scenes():
-        raise SceneError.of_field("scene", name, f"must be one of {', '.join(scenes())}")
-    return scenes()[name].make(**fields)
+    if name not in all_scenes():
+        raise SceneError.of_field("scene", name, f"must be one of {', '.join(all_scenes())}")
+    return all_scenes()[name].make(**fields)

@@ -18,6 +18,7 @@ from srd_driver.parallel import communicator
 COLLOID_COLLOID = RepulsiveMie(sigma=4.0, exponent=24)
 COLLOID_FLUID = RepulsiveMie(sigma=2.0, exponent=6)
 WALL = IntegratedWall(sigma=2.0)
+FACES = ("ylo", "yhi")
 
 
 def distances(sigma: float, cutoff: float) -> Any:
@@ -74,12 +75,21 @@ def test_mie_force_and_energy_are_those_of_lammps(lammps: Any, potential: Repuls
         assert_allclose(forces[0], -forces[1], rtol=0, atol=0)
 
 
+def lepton_wall(wall: IntegratedWall) -> str:
+    """The exact wall at both y faces, by LAMMPS's own expressions, which it compiles every step."""
+    u = f"({wall.sigma!r}/r)"
+    shift = 6 / 11 * (160 / 231) ** (5 / 6)
+    energy = f"{1.5 * math.pi * wall.strength!r}*({21 / 32!r}*{u}^11-{u}^5+{shift!r})"
+    faces = " ".join(f'{face} EDGE "{energy}" {wall.cutoff!r}' for face in FACES)
+    return f"fix wall all wall/lepton {faces}"
+
+
 def test_exact_and_tabulated_wall_are_those_of_lammps(lammps: Any, tmp_path: Path) -> None:
     table = tmp_path / "wall.table"
     table.write_text(WALL.table_text())
     fixes = {
-        WALL.lepton_fix("wall", "all"): 1e-12,
-        WALL.table_fix("wall", "all", str(table)): 1e-11,
+        lepton_wall(WALL): 1e-12,
+        WALL.table_fix("wall", "all", FACES, str(table)): 1e-11,
     }
     for fix, bound in fixes.items():
         for y in distances(WALL.sigma, WALL.cutoff):

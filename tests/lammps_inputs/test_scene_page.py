@@ -1,6 +1,6 @@
 """The page that lists the fields says what the code says."""
 
-from lammps_inputs import SCENES
+from lammps_inputs import all_scenes
 from tests.conftest import ROOT
 
 
@@ -8,8 +8,8 @@ def test_scene_page_lists_every_field_with_its_default_and_meaning() -> None:
     page = (ROOT / "docs" / "scenes.md").read_text(encoding="utf-8")
     _, *sections = page.split("\n## `")
     documented = {section.partition("`")[0]: section for section in sections}
-    assert documented.keys() == SCENES.keys()
-    for name, scene in SCENES.items():
+    assert documented.keys() == all_scenes().keys()
+    for name, scene in all_scenes().items():
         for field, info in scene.model_fields.items():
             default = "none" if info.default is None else info.default
             shown = default if isinstance(default, str) else f"{default:g}"

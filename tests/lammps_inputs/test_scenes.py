@@ -10,7 +10,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from lammps_inputs import (
-    Channel,
+    Scene,
     SceneError,
     initial_state,
     make_scene,
@@ -18,12 +18,13 @@ from lammps_inputs import (
     read_scene,
 )
 from lammps_inputs.deck import check_engine
+from lammps_inputs.scenes.channel import Channel
 
 NAN, INFINITY = float("nan"), float("inf")
 
 BAD: list[tuple[str, dict[str, Any], str]] = [
-    ("chanel", {}, "scene = 'chanel': must be one of channel, poiseuille, bulk"),
-    ("channel", {"lenght": 40}, "lenght = 40: unknown field; channel has length, width"),
+    ("chanel", {}, "scene = 'chanel': must be one of bulk, channel, poiseuille"),
+    ("channel", {"lenght": 40}, "lenght = 40: unknown field; channel has duration, equilibration"),
     ("poiseuille", {"colloids": 2}, "colloids = 2: unknown field"),
     ("channel", {"length": 40.5}, "length = 40.5: a periodic length must be a whole number"),
     ("bulk", {"width": 20.25}, "width = 20.25: a periodic length must be a whole number"),
@@ -61,6 +62,8 @@ BAD: list[tuple[str, dict[str, Any], str]] = [
     ("bulk", {"height": 8}, "height = 8.0: only for dimension = 3"),
     ("bulk", {"dimension": 3, "angle": 120}, "angle = 120.0: rotations about the coordinate"),
     ("bulk", {"shear_wave": 2}, "shear_wave = 2: should be less than or equal to 1"),
+    ("channel", {"gravity": -10}, "gravity = -10.0: colloids would fall at about 3."),
+    ("poiseuille", {"gravity": 0.05}, "gravity = 0.05: the fluid would flow at about 5.2, faster"),
 ]
 
 
@@ -99,8 +102,8 @@ def test_what_fix_srd_cannot_do_is_refused(name: str, fields: dict[str, Any], me
 
 def test_defaults_are_the_papers() -> None:
     """Section 3.4.1, Table 3.1 and section 4.4 of tabatabaei-2009; its smallest system."""
-    scene = make_scene("channel")
-    assert isinstance(scene, Channel)
+    scene = Channel.make()
+    assert scene == make_scene("channel")
     assert (scene.length, scene.width, scene.colloids) == (40, 10, 3)
     assert (scene.density, scene.collision_time, scene.angle) == (10, 0.015, 90)
     assert (scene.md_steps_per_collision, scene.gravity, scene.colloid_radius) == (15, 0.1, 2)
@@ -109,8 +112,9 @@ def test_defaults_are_the_papers() -> None:
 
 
 def test_density_counts_per_free_cell() -> None:
-    scene = make_scene("channel", length=300, colloids=31, spacing=5)
-    assert scene.system.solvent.particles == round(10 * (3000 - 31 * math.pi * 4)) == 26104
+    solvent = make_scene("channel", length=300, colloids=31, spacing=5).system.solvent
+    assert solvent is not None
+    assert solvent.particles == round(10 * (3000 - 31 * math.pi * 4)) == 26104
 
 
 @pytest.mark.parametrize("name", ["channel", "poiseuille", "bulk"])
@@ -152,10 +156,11 @@ def test_a_run_is_whole_sampling_intervals_and_not_too_short(
     scene = make_scene(
         "channel", sampling_interval=sampling, duration=duration, equilibration=equilibration
     )
-    assert scene.system.clock.collisions % scene.system.clock.collisions_per_sample == 0
-    time = scene.system.clock.collisions * scene.collision_time
-    interval = scene.system.clock.collisions_per_sample * scene.collision_time
-    assert abs(interval - sampling) <= 0.5 * scene.collision_time * (1 + 1e-9)
+    clock = scene.system.clock
+    assert clock.total_steps % clock.sample_steps == 0
+    time, interval = clock.end, clock.sample_steps * clock.time_step
+    collision_time = clock.steps_per_collision * clock.time_step
+    assert abs(interval - sampling) <= 0.5 * collision_time * (1 + 1e-9)
     assert -1e-6 <= time - (duration + equilibration) < interval * (1 + 1e-6)
 
 
@@ -169,40 +174,36 @@ def test_a_run_is_whole_sampling_intervals_and_not_too_short(
     ],
     ids=lambda scene: f"{scene.name}{scene.system.box.dimensions}",
 )
-def test_initial_state(scene: Any) -> None:
-    state = initial_state(scene.system, scene.seed)
+def test_initial_state(scene: Scene) -> None:
+    system = scene.system
+    assert system.solvent is not None
+    state = initial_state(system, scene.seed)
     x, v = state.fluid_positions, state.fluid_velocities
-    assert x.shape == v.shape == (scene.system.solvent.particles, scene.system.box.dimensions)
+    assert x.shape == v.shape == (system.solvent.particles, system.box.dimensions)
     assert (x >= 0).all()
-    assert (x < np.array(scene.system.box.sizes)).all()
-    momentum = v.sum(axis=0)
-    for centre, velocity in zip(state.colloid_positions, state.colloid_velocities, strict=True):
-        apart = x - centre
-        apart[:, 0] -= scene.length * np.round(apart[:, 0] / scene.length)
-        assert (np.hypot(*apart.T) > scene.colloid_radius).all()
-        momentum = momentum + scene.colloid_mass * velocity
+    assert (x < np.array(system.box.sizes)).all()
+    for centre, radius in zip(state.colloid_positions, system.radii, strict=True):
+        apart = system.box.nearest_image(x - centre)
+        assert (np.hypot(*apart.T) > radius).all()
+    momentum = v.sum(axis=0) + system.masses @ state.colloid_velocities
     np.testing.assert_allclose(momentum, 0, atol=1e-9)
     # kBT = 1: sum of N d squares of variance 1; five standard deviations, false alarm 6e-7
     thermal = v.copy()
-    if scene.name == "bulk":
-        thermal[:, 0] -= scene.shear_wave * np.sin(2 * np.pi * x[:, 1] / scene.width)
+    wave = np.sin(2 * np.pi * x[:, 1] / system.box.sizes[1])
+    thermal[:, 0] -= system.solvent.shear_wave * wave
     assert abs((thermal**2).mean() - 1) < 5 * math.sqrt(2 / v.size)
-    again = initial_state(scene.system, scene.seed)
+    again = initial_state(system, scene.seed)
     np.testing.assert_array_equal(again.fluid_positions, x)
 
 
 def test_initial_fluid_fills_the_free_space_evenly() -> None:
     """Chi-square of particle counts in quarter cells far from and between colloids."""
     scene = make_scene("channel", density=100)
-    x = initial_state(scene.system, scene.seed).fluid_positions
+    state = initial_state(scene.system, scene.seed)
+    x = state.fluid_positions
     counts = np.histogram2d(*x.T, bins=(80, 20), range=((0, 40), (0, 10)))[0]
     centres = np.stack(np.meshgrid(np.arange(80) / 2 + 0.25, np.arange(20) / 2 + 0.25), axis=-1)
-    apart = np.array(
-        [
-            np.hypot(*(centres - c).T)
-            for c in initial_state(scene.system, scene.seed).colloid_positions
-        ]
-    )
+    apart = np.array([np.hypot(*(centres - c).T) for c in state.colloid_positions])
     free = counts[(apart > 2 + 0.36).all(axis=0)]
     chi_square = ((free - 25) ** 2 / 25).sum()
     assert abs(chi_square - free.size) < 5 * math.sqrt(2 * free.size)

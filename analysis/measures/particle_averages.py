@@ -1,4 +1,4 @@
-"""Temperature and potential energy of particles without a solvent."""
+"""What the table of a system without a solvent averages: temperature, potential energy, drift."""
 
 from analysis import blocking
 from analysis.findings import Findings
@@ -6,7 +6,7 @@ from analysis.run_directory import RunDirectory
 
 
 def measure(run: RunDirectory) -> Findings:
-    """Means over time of the kinetic temperature and of the potential energy a particle [kBT]."""
+    """The mean over time of every column."""
     table = run.table()
     used = run.sampled(table.steps)
     return Findings({name: blocking.mean(table[name][used]).as_json() for name in table.columns})
