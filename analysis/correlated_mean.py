@@ -25,8 +25,8 @@ ADVISED = 30
 def mean(series: Runs, interval: float | None = None) -> Estimate:
     """Mean of equidistant, correlated samples with its error.
 
-    Where a run is shorter than `KNOWN` times the slow motion in its error, the error is a
-    lower bound, and the reason says how long a run must be; so it is of fewer than
+    Where a run is likely to be shorter than `KNOWN` times the slow motion in its error, the error
+    is a lower bound, and the reason says how long a run must be; so it is of fewer than
     `FEWEST_SAMPLES` samples. A single sample has none.
 
     Args:
@@ -140,10 +140,11 @@ def _as_runs(series: Runs) -> list[Array]:
 
 def _too_slow(fluctuation: Fluctuation, samples: int, interval: float | None) -> str | None:
     """What to do about a run that is short for its slow motion."""
-    if samples >= KNOWN * fluctuation.slow:
+    motion = fluctuation.slower_than(samples / KNOWN)
+    if motion is None:
         return None
     scale, unit = (1.0, "samples") if interval is None else (interval, "t0")
-    slow = scale * fluctuation.slow
+    slow = scale * motion
     return (
         f"at least, not known: motion of about {slow:.2g} {unit} is slow for "
         f"{scale * samples:.4g} {unit}; run {ADVISED * slow:.2g} {unit} or more"

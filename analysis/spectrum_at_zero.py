@@ -41,7 +41,8 @@ FALLS = np.geomspace(0.5, 0.02, 4)
 LONGEST = 1.5  # slowest tau of a rise, in lengths of all runs together
 LONGEST_FALL = 0.1
 NEGLIGIBLE = 1e-6  # weight beside the largest
-SCALES = 100  # that the distribution is kept on
+SCALES = 100  # that the distributions are kept on
+LIKELY = 0.25
 
 
 @dataclass(frozen=True)
@@ -52,13 +53,25 @@ class Fluctuation:
         scales: of its parts, increasing, (S,).
         weights: of its parts, their sum is 1, (S,).
         freedom: of each part, the number of modes.
-        slow: time of the motion that makes the error, in samples; 0 where none is seen.
+        slow: times of the motion that makes the error, by its part in it, in samples; 0 where it
+            is faster than the samples, increasing, (Q,), equally probable.
     """
 
     scales: Array
     weights: Array
     freedom: float
-    slow: float
+    slow: Array
+
+    def slower_than(self, time: float) -> float | None:
+        """The slow motion's time, where it is likely beyond a time; both in samples.
+
+        Returns:
+            the median of what lies beyond, None where less than `LIKELY` of the probability does.
+        """
+        beyond = self.slow[self.slow > time]
+        if len(beyond) < LIKELY * len(self.slow):
+            return None
+        return float(np.median(beyond))
 
     def half_width(self, confidence: float) -> float:
         """Half of the interval with this probability."""
@@ -126,7 +139,7 @@ def fluctuation_of_mean(runs: Sequence[Array]) -> Fluctuation:
     variance = ends[first] * ends[second] * sums[first, second] * level / freedom / total
     variance *= total * size / sum(map(len, runs))  # of samples that fill no block
     own = grid.time * np.maximum(0.0, 1 - 1 / ends)  # by the part of the error that it makes
-    slow = _median(np.maximum(own[first], own[second]), weight)
+    slow = _quantiles(np.maximum(own[first], own[second]), weight)
     return Fluctuation(*_histogram(np.sqrt(variance), weight), freedom, size * slow)
 
 
@@ -214,10 +227,11 @@ def _mode_variances(count: int, times: tuple[float, ...]) -> tuple[NDArray[np.in
     return bins, np.concatenate([zero, np.maximum(variance, 1e-12)], axis=1)
 
 
-def _median(values: Array, weights: Array) -> float:
+def _quantiles(values: Array, weights: Array) -> Array:
+    """`SCALES` equally probable values."""
     order = np.argsort(values)
-    middle = int(np.searchsorted(np.cumsum(weights[order]), 0.5))
-    return float(values[order[min(middle, len(order) - 1)]])
+    places = np.searchsorted(np.cumsum(weights[order]), (np.arange(SCALES) + 0.5) / SCALES)
+    return np.asarray(values[order[np.minimum(places, len(order) - 1)]])
 
 
 def _histogram(scale: Array, weight: Array) -> tuple[Array, Array]:

@@ -25,13 +25,13 @@ def test_mode_variances_are_those_of_the_covariance_matrix(time):
 
 
 def test_student_of_one_part_is_that_part():
-    one = Fluctuation(np.array([0.2]), np.array([1.0]), 7.0, 0.0)
+    one = Fluctuation(np.array([0.2]), np.array([1.0]), 7.0, np.zeros(1))
     assert one.half_width(0.95) == pytest.approx(0.2 * stats.t.ppf(0.975, 7), rel=1e-3)
     assert one.student() == pytest.approx((0.2, 7.0), rel=1e-2)
 
 
 def test_mixture_keeps_its_intervals():
-    mixture = Fluctuation(np.array([0.1, 0.3]), np.array([0.8, 0.2]), 50.0, 0.0)
+    mixture = Fluctuation(np.array([0.1, 0.3]), np.array([0.8, 0.2]), 50.0, np.zeros(1))
     scale, freedom = mixture.student()
     for confidence in (0.6827, 0.95):
         width = scale * stats.t.ppf((1 + confidence) / 2, freedom)
@@ -45,6 +45,12 @@ def test_scale_and_units_do_not_matter():
     one, other = fluctuation_of_mean([series]), fluctuation_of_mean([1e6 + 1e-3 * series])
     assert other.student()[0] == pytest.approx(1e-3 * one.student()[0], rel=1e-3)
     assert other.slow == pytest.approx(one.slow, rel=1e-3)
+
+
+def test_slow_motion_is_told_where_it_is_likely():
+    none = Fluctuation(np.ones(1), np.ones(1), 7.0, np.array([0.0, 1.0, 2.0, 3.0, 4.0, 50.0]))
+    assert none.slower_than(10.0) is None
+    assert none.slower_than(3.5) == 27.0
 
 
 def test_many_samples_are_those_of_their_blocks():
