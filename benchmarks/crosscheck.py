@@ -21,10 +21,9 @@ from analysis.flow import momentum_profile
 from analysis.run_directory import RunDirectory
 from analysis.shear_wave import wave_amplitude
 from lammps_inputs import make_scene
-from lammps_inputs.deck import Engine
 from srd_driver.sweep import Run, available_cores, run_all
 
-ENGINES: tuple[Engine, ...] = ("mpc", "reference", "srd")
+ENGINES: tuple[str, ...] = ("mpc", "reference", "srd")
 COLORS = ("C2", "C0", "C1")
 SEEDS = tuple(range(1, 11))
 COLLOIDS = (1, 3, 5)  # in 40 x 10
@@ -63,7 +62,7 @@ QUANTITIES: dict[str, list[str]] = {
 }
 
 
-def run_of(folder: Path, name: str, engine: Engine, seed: int) -> Run:
+def run_of(folder: Path, name: str, engine: str, seed: int) -> Run:
     scene = make_scene(name.partition(",")[0], **SCENES[name], seed=seed)
     return Run(
         folder / f"{name.replace(', ', '-').replace(' ', '-')}-{engine}-{seed}", scene, engine
@@ -83,7 +82,7 @@ def over_seeds(summaries: list[dict[str, Any]], quantity: str) -> tuple[float, f
     return float(values.mean()), float(values.std(ddof=1) / np.sqrt(len(values)))
 
 
-def table(summaries: dict[tuple[str, str], list[dict[str, Any]]]) -> str:
+def as_table(summaries: dict[tuple[str, str], list[dict[str, Any]]]) -> str:
     """The comparison as Markdown."""
     rows = ["| scene | quantity | fix mpc | reference | fix srd | theory |", "|---|" + "---|" * 5]
     for scene, quantities in QUANTITIES.items():
@@ -108,22 +107,20 @@ def figure(folder: Path, file: Path) -> None:
         velocity: list[NDArray[np.float64]] = []
         moved: list[NDArray[np.float64]] = []
         for seed in SEEDS:
-            run_ = RunDirectory(run_of(folder, "bulk", engine, seed).folder)
-            fluid = run_.fluid_profile
-            wave.append(
-                wave_amplitude(fluid.y, run_.field("width"), fluid.counts, fluid.velocity_x)
-            )
-            times = run_.times(fluid.steps)
-            run_ = RunDirectory(run_of(folder, "poiseuille", engine, seed).folder)
-            fluid = run_.fluid_profile
-            used = fluid.steps > run_.equilibration_steps
+            bulk = RunDirectory(run_of(folder, "bulk", engine, seed).folder)
+            fluid = bulk.profile()
+            wave.append(wave_amplitude(fluid.y, bulk.width, fluid.counts, fluid.velocity_x))
+            times = bulk.times(fluid.steps)
+            slit = RunDirectory(run_of(folder, "poiseuille", engine, seed).folder)
+            fluid = slit.profile()
+            used = fluid.steps > slit.equilibration_steps
             flow = momentum_profile(fluid.counts[used], fluid.velocity_x[used])
             velocity.append(flow.mean(axis=0))
-            run_ = RunDirectory(run_of(folder, few(1), engine, seed).folder)
-            x = run_.colloids.positions[1:, :, 0].mean(axis=1) - run_.colloids.positions[0, :, 0]
-            carried = np.cumsum(run_.observables.mean_velocity_x) * run_.interval
-            moved.append(x - carried)
-            ends = run_.times(run_.observables.steps)
+            channel = RunDirectory(run_of(folder, few(1), engine, seed).folder)
+            table = channel.table()
+            x = channel.particles().positions[:, 0, 0]
+            moved.append(x[1:] - x[0] - np.cumsum(table["mean_velocity_x"]) * channel.interval)
+            ends = channel.times(table.steps)
         decay.semilogy(times, np.mean(wave, axis=0), **style)
         profile.plot(fluid.y, np.mean(velocity, axis=0), **style)
         settling.plot(ends, np.mean(moved, axis=0), **style)
@@ -152,7 +149,7 @@ def main() -> None:
     summaries: dict[tuple[str, str], list[dict[str, Any]]] = {}
     for (name, engine, _), run in runs.items():
         summaries.setdefault((name, engine), []).append(analyze(run.folder))
-    text = table(summaries)
+    text = as_table(summaries)
     (folder / "crosscheck.md").write_text(text + "\n", encoding="utf-8")
     figure(folder, folder / "crosscheck.png")
     print(text)

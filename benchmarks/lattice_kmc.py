@@ -22,13 +22,17 @@ import subprocess
 import time
 from pathlib import Path
 from statistics import median
+from typing import Any
 
 import numpy as np
+from numpy.typing import NDArray
 
 from lattice import monte_carlo, shocks, spec
 from lattice.models import LatticeGas
 
 EXAMPLES = Path(__file__).parents[1] / "docs" / "examples" / "lattice"
+Array = NDArray[Any]
+
 SEED = 1
 REPEATS = 5
 
@@ -68,13 +72,20 @@ for seed in range(model["repeats"]):
 """
 
 
-def start_state(model: LatticeGas, sites: int, z: float) -> np.ndarray:
+def _ends(model: LatticeGas) -> tuple[Array, Array]:
+    """The boundary generators of an open chain."""
+    assert model.left is not None
+    assert model.right is not None
+    return model.left, model.right
+
+
+def start_state(model: LatticeGas, sites: int, z: float) -> Array:
     """A draw of the product measure of z."""
     rng = np.random.default_rng(SEED)
     return rng.choice(model.size, size=sites, p=model.marginal(z)).astype(np.uint8)
 
 
-def compiled(model: LatticeGas, state: np.ndarray, attempts: int) -> tuple[float, int]:
+def compiled(model: LatticeGas, state: Array, attempts: int) -> tuple[float, int]:
     """Seconds on one thread, and number of events, of this package's kernel."""
     tables = monte_carlo._tables(model)
     words = np.random.default_rng(SEED).integers(0, 2**64, 4, dtype=np.uint64)
@@ -97,17 +108,18 @@ def compiled(model: LatticeGas, state: np.ndarray, attempts: int) -> tuple[float
     return time.thread_time() - start, clocks
 
 
-def straightforward(model: LatticeGas, state: np.ndarray, attempts: int) -> tuple[float, int]:
+def straightforward(model: LatticeGas, state: Array, attempts: int) -> tuple[float, int]:
     """Seconds and events of the same algorithm in Python: numpy draws, then a loop."""
     rng = np.random.default_rng(SEED)
     s, sites = model.size, state.size
-    ends = (model.left, model.right)
+    ends = _ends(model)
     clock = float(-np.diag(model.bulk).min())
     clocks = [max(1, int(np.ceil(-np.diag(end).min() / clock))) for end in ends]
 
-    def cumulative(matrix: np.ndarray, rate: float) -> list[list[float]]:
+    def cumulative(matrix: Array, rate: float) -> list[list[float]]:
         chances = matrix / rate + np.eye(len(matrix))
-        return np.cumsum(chances, axis=0).T.tolist()
+        rows: list[list[float]] = np.cumsum(chances, axis=0).T.tolist()
+        return rows
 
     bulk = cumulative(model.bulk, clock)
     left, right = (cumulative(end, clock * n) for end, n in zip(ends, clocks, strict=True))
@@ -136,7 +148,7 @@ def event_rate(model: LatticeGas, sites: int, z: float) -> float:
     """Events per unit of time in the product measure of z."""
     p = model.marginal(z)
     pair = np.kron(p, p)
-    ends = sum(float(-np.diag(end) @ p) for end in (model.left, model.right))
+    ends = sum(float(-np.diag(end) @ p) for end in _ends(model))
     return (sites - 1) * float(-np.diag(model.bulk) @ pair) + ends
 
 
@@ -169,7 +181,8 @@ def against_gillespy2(
     state = start_state(model, sites, z1)
     duration = 2000.0
     moves = []
-    for kind, matrix in (("bond", model.bulk), ("left", model.left), ("right", model.right)):
+    left, right = _ends(model)
+    for kind, matrix in (("bond", model.bulk), ("left", left), ("right", right)):
         for final, initial in np.argwhere(matrix > 0).tolist():
             moves.append((kind, final, initial, float(matrix[final, initial])))
     data = {

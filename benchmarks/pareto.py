@@ -25,16 +25,16 @@ from statistics import median
 from typing import Any
 
 import numpy as np
-from analysis.summary import summary_of
 from matplotlib.figure import Figure
-from processor_time import cost, endless
-from srd_driver.run_directory import replace_text
 
+from analysis.analyze import summary_of
 from analysis.blocking import Estimate
 from analysis.sweep_table import combine
 from lammps_inputs import Scene, make_scene
-from lammps_inputs.deck import Engine
-from lammps_inputs.viscosity import viscosity
+from lammps_inputs.scenes.channel import Channel
+from lammps_inputs.viscosity import solvent_viscosity
+from processor_time import cost, endless
+from run_files.writing import replace_text
 from srd_driver.sweep import Run, available_cores, run_all
 
 BUDGET, QUICK_BUDGET = 6.0, 2.0  # processor seconds of a setting
@@ -52,14 +52,14 @@ Summary = dict[str, Any]
 class Setting:
     """An engine and the fields of a scene that are not those of its study."""
 
-    engine: Engine
+    engine: str
     changes: tuple[tuple[str, Any], ...] = ()
 
     def __str__(self) -> str:
         return " ".join([self.engine, *(f"{name}={value}" for name, value in self.changes)])
 
 
-def setting(engine: Engine, **changes: Any) -> Setting:
+def setting(engine: str, **changes: Any) -> Setting:
     return Setting(engine, tuple(changes.items()))
 
 
@@ -106,12 +106,18 @@ def entry(summary: Summary, name: str) -> Estimate:
     return Estimate(found["value"], found["error"], found.get("reason"))
 
 
+def theory_of(scene: Scene) -> float:
+    """Kinematic viscosity by kinetic theory [a0^2/t0]."""
+    system = scene.system
+    assert system.solvent is not None
+    return solvent_viscosity(system.solvent, system.box.dimensions).total
+
+
 def relative(name: str) -> Callable[[Summary, Scene], Estimate]:
     """A viscosity over that of kinetic theory."""
 
     def measure(summary: Summary, scene: Scene) -> Estimate:
-        theory = viscosity(scene.density, scene.collision_time, scene.angle)
-        return entry(summary, name).scaled(1 / theory)
+        return entry(summary, name).scaled(1 / theory_of(scene))
 
     return measure
 
@@ -120,22 +126,30 @@ def plain(name: str, scale: float = 1) -> Callable[[Summary, Scene], Estimate]:
     return lambda summary, scene: entry(summary, name).scaled(scale)
 
 
+def channel_of(scene: Scene) -> Channel:
+    """The scene of a study of colloids."""
+    assert isinstance(scene, Channel)
+    return scene
+
+
 def speed_over_gravity(summary: Summary, scene: Scene) -> Estimate:
     """v_s / g: linear response [t0]."""
-    return entry(summary, "settling_speed").scaled(1 / scene.gravity)
+    return entry(summary, "settling_speed").scaled(1 / channel_of(scene).gravity)
 
 
 def inverse_drag(summary: Summary, scene: Scene) -> Estimate:
     """v_s n_f nu / (M_c g): in units of the fluid's viscosity, so that fluids may be compared."""
-    fluid = scene.density * viscosity(scene.density, scene.collision_time, scene.angle)
-    return speed_over_gravity(summary, scene).scaled(fluid / scene.colloid_mass)
+    channel = channel_of(scene)
+    fluid = channel.density * theory_of(scene)
+    return speed_over_gravity(summary, scene).scaled(fluid / channel.colloid_mass)
 
 
 def mobility(summary: Summary, scene: Scene) -> Estimate:
     """kBT v / (M_c g) in the frame at rest, which Einstein's relation says is D [a0^2/t0]."""
-    if not scene.gravity:
+    channel = channel_of(scene)
+    if not channel.gravity:
         return entry(summary, "diffusion")
-    force = scene.colloid_mass * scene.gravity
+    force = channel.colloid_mass * channel.gravity
     return entry(summary, "settling_speed_rest").scaled(1 / force)
 
 
@@ -245,7 +259,7 @@ class Result:
         return self.seconds * self.statistical**2 / (error**2 - floor**2)
 
 
-def measure_speeds(scenes: dict[str, tuple[Scene, Engine]], file: Path) -> dict[str, float]:
+def measure_speeds(scenes: dict[str, tuple[Scene, str]], file: Path) -> dict[str, float]:
     """Processor seconds for one time unit of each scene; those in the file are not measured."""
     known: dict[str, float] = json.loads(file.read_text()) if file.exists() else {}
     missing = [name for name in scenes if name not in known]
@@ -258,7 +272,7 @@ def measure_speeds(scenes: dict[str, tuple[Scene, Engine]], file: Path) -> dict[
     return known
 
 
-def _cost(scene: Scene, engine: Engine) -> float:
+def _cost(scene: Scene, engine: str) -> float:
     with endless(scene, engine) as simulation:
         return cost(simulation, PIECE_SECONDS)
 

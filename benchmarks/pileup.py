@@ -20,7 +20,7 @@ from matplotlib.figure import Figure
 from numpy.typing import NDArray
 
 from analysis.two_fluid import TwoFluid
-from lammps_inputs import Channel
+from lammps_inputs.scenes.channel import Channel
 
 Array = NDArray[np.float64]
 
@@ -42,7 +42,7 @@ def run(folder: Path, seed: int) -> None:
     assert last.startswith("run ")
     for time in TIMES:
         setup += [
-            f"run {round(time / SCENE.time_step)} upto",
+            f"run {round(time / SCENE.system.clock.time_step)} upto",
             f"fix_modify solvent save fluid.{time}",
         ]
     script.write_text("\n".join(setup) + "\n", encoding="utf-8")

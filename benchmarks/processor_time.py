@@ -3,11 +3,10 @@
 import time
 
 from lammps_inputs import Scene
-from lammps_inputs.deck import Engine
 from srd_driver import Simulation
 
 
-def endless(scene: Scene, engine: Engine) -> Simulation:
+def endless(scene: Scene, engine: str) -> Simulation:
     """The scene in a temporary run directory, one sampling interval done, without checkpoints."""
     simulation = Simulation(
         scene.model_copy(update={"duration": 1e9}), engine, checkpoint_interval=1e6

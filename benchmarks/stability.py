@@ -24,15 +24,14 @@ from dataclasses import dataclass, field, replace
 from pathlib import Path
 from typing import Any, Literal
 
-from analysis.summary import summary_of
 from matplotlib.figure import Figure
 
 from analysis import RunDirectoryError
+from analysis.analyze import summary_of
 from lammps_inputs import SceneError, make_scene
-from lammps_inputs.deck import Engine, check_engine
-from lammps_inputs.limits import warnings
+from lammps_inputs.deck import check_engine, warnings
 from lammps_inputs.viscosity import viscosity
-from srd_driver import run_directory
+from run_files.progress import is_begun, read_failure
 from srd_driver.sweep import Run, available_cores, is_finished, run_all
 
 State = Literal["refused", "broken", "inaccurate", "stable"]
@@ -68,7 +67,7 @@ class Axis:
     values: tuple[float, ...]
     fields: Callable[[float], Fields]
     criterion: Criterion
-    engine: Engine = "mpc"
+    engine: str = "mpc"
 
 
 @dataclass
@@ -267,16 +266,16 @@ def execute(todo: list[Point], jobs: int) -> None:
 
 
 def _is_over(run: Run) -> bool:
-    if not run_directory.is_begun(run.folder):
+    if not is_begun(run.folder):
         return False
-    return is_finished(run) or run_directory.read_failure(run.folder) is not None
+    return is_finished(run) or read_failure(run.folder) is not None
 
 
 def judge(point: Point, failure: str | None) -> None:
     """The state of a point that ran, and what told it."""
     assert point.run
-    if run_directory.is_begun(point.run.folder):
-        failure = failure or run_directory.read_failure(point.run.folder)
+    if is_begun(point.run.folder):
+        failure = failure or read_failure(point.run.folder)
     if failure:
         point.state = "broken"
         point.told.append(f"stopped: {_cause(failure)}")

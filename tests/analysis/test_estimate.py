@@ -33,13 +33,13 @@ THREE, FIVE = Estimate(3.0, 0.3), Estimate(5.0, 0.4)
         (THREE.scaled(-2), -6.0, 0.6),
     ],
 )
-def test_arithmetic_by_hand(result, value, error):
+def test_arithmetic_by_hand(result: Estimate, value: float, error: float) -> None:
     assert (result.value, result.error) == pytest.approx((value, error))
     assert result.reason is None
     assert result.freedom == math.inf
 
 
-def test_errors_of_a_function_are_those_of_a_sample():
+def test_errors_of_a_function_are_those_of_a_sample() -> None:
     random = np.random.default_rng(1)
     a, b = 3 + 0.03 * random.normal(size=100_000), 5 + 0.04 * random.normal(size=100_000)
     one, other = Estimate(3.0, 0.03), Estimate(5.0, 0.04)
@@ -50,7 +50,7 @@ def test_errors_of_a_function_are_those_of_a_sample():
     assert (one * other - 1).error == pytest.approx((a * b).std(), rel=0.02)
 
 
-def test_reasons_are_carried_once():
+def test_reasons_are_carried_once() -> None:
     poor, poorer = Estimate(1.0, 0.1, "short"), Estimate(2.0, None, "one run")
     assert (poor - poorer) == Estimate(-1.0, None, "short; one run")
     assert (poor + poor).reason == "short"
@@ -58,7 +58,7 @@ def test_reasons_are_carried_once():
     assert Estimate(None, None, "no gravity").sqrt().reason == "no gravity"
 
 
-def test_what_cannot_be_computed_says_so():
+def test_what_cannot_be_computed_says_so() -> None:
     assert Estimate(None, None, "division by 0") == (THREE / 0)
     assert Estimate(-1.0, 0.1).sqrt().reason == "the square root of a negative number"
     assert (THREE / Estimate(0.1, 0.1)).reason == "the divisor is 0 within 2 of its errors"
@@ -70,13 +70,13 @@ def test_what_cannot_be_computed_says_so():
         THREE.interval(1.5)
 
 
-def test_intervals_are_those_of_students_t():
+def test_intervals_are_those_of_students_t() -> None:
     low, high = Estimate(1.0, 0.1, freedom=4).interval(0.95)
     assert (low, high) == pytest.approx((1 - 0.2776, 1 + 0.2776), abs=1e-4)  # a table's 2.776
     assert THREE.half_width(0.6827) == pytest.approx(0.3, rel=1e-4)
 
 
-def test_deviation_is_normal_whatever_the_freedom():
+def test_deviation_is_normal_whatever_the_freedom() -> None:
     # both are as improbable as 1.96 normal standard deviations
     assert Estimate(1.2776, 0.1, freedom=4).deviation(1.0) == pytest.approx(1.96, abs=1e-3)
     assert Estimate(0.804, 0.1).deviation(1.0) == pytest.approx(-1.96, abs=1e-9)
@@ -85,7 +85,7 @@ def test_deviation_is_normal_whatever_the_freedom():
     assert Estimate(2.0, 0.0).deviation(1.0) == math.inf
 
 
-def test_freedom_of_a_sum():
+def test_freedom_of_a_sum() -> None:
     # Welch-Satterthwaite: two equal variances with 4 each have 8; one that is all keeps its own
     assert joint_freedom([1.0, 1.0], [4.0, 4.0]) == pytest.approx(8.0)
     assert joint_freedom([1.0, 0.0], [4.0, 1.0]) == pytest.approx(4.0)
@@ -96,14 +96,14 @@ def test_freedom_of_a_sum():
     assert Estimate(4.0, 0.1, freedom=5).sqrt().freedom == 5
 
 
-def test_json_and_back():
+def test_json_and_back() -> None:
     assert Estimate(1.0, 0.1).as_json() == {"value": 1.0, "error": 0.1}
     for estimate in (Estimate(1.0, 0.1, "short", 7.5), Estimate(1.0, None, "why"), THREE):
         assert Estimate.of_json(estimate.as_json() | {"theory": 2.0}) == estimate
 
 
 @pytest.mark.parametrize(("count", "reason"), [(5, "error from 5 samples"), (6, None)])
-def test_independent_samples_have_their_plain_error(count, reason):
+def test_independent_samples_have_their_plain_error(count: int, reason: str | None) -> None:
     # 0, 1, 0, 1, 0 about 2/5: variance 0.3 of each, 0.06 of the mean
     estimate = mean_of_independent(np.arange(count) % 2)
     assert estimate.value == pytest.approx((count // 2) / count)
@@ -115,7 +115,7 @@ def test_independent_samples_have_their_plain_error(count, reason):
     assert mean_of_independent([]) == Estimate(None, None, "no samples")
 
 
-def test_repeats_by_hand():
+def test_repeats_by_hand() -> None:
     # spread s^2/R = 2/2 = 1 with freedom 1; own errors sum e^2/R^2 = 8/4 = 2 with 4 + 4
     repeats = [Estimate(1.0, 2.0, freedom=4), Estimate(3.0, 2.0, freedom=4)]
     mean = mean_of_repeats(repeats)
@@ -124,14 +124,14 @@ def test_repeats_by_hand():
     assert mean.reason is None
 
 
-def test_repeats_beyond_their_errors_have_their_spread():
+def test_repeats_beyond_their_errors_have_their_spread() -> None:
     mean = mean_of_repeats([Estimate(v, 0.01, freedom=20) for v in (0.0, 1.0, 2.0)])
     assert mean.error == pytest.approx(1 / math.sqrt(3))
     assert mean.freedom == 2
-    assert "the repeats spread beyond their own errors" in mean.reason
+    assert "the repeats spread beyond their own errors" in (mean.reason or "")
 
 
-def test_repeats_that_lack_something():
+def test_repeats_that_lack_something() -> None:
     nothing = Estimate(None, None, "subdiffusive")
     assert mean_of_repeats([nothing, nothing]) == nothing
     assert mean_of_repeats([THREE, nothing]) == Estimate(3.0, 0.3, "1 of 2 repeats tell")
@@ -139,7 +139,7 @@ def test_repeats_that_lack_something():
     assert (lone.value, lone.error, lone.freedom) == pytest.approx((2.0, 1.0, 1.0))
 
 
-def test_repeats_are_covered():
+def test_repeats_are_covered() -> None:
     random = np.random.default_rng(3)
     hits, trials = 0, 1000
     for _ in range(trials):
@@ -150,8 +150,8 @@ def test_repeats_are_covered():
     assert 0.92 < hits / trials < 0.98
 
 
-def test_jackknife_of_a_mean_is_its_plain_error():
+def test_jackknife_of_a_mean_is_its_plain_error() -> None:
     segments = np.array([[1.0, 0.0], [2.0, 0.0], [6.0, 0.0]])
-    estimate = jackknife(lambda row: row.sum(), segments)
+    estimate = jackknife(lambda row: float(row.sum()), segments)
     assert (estimate.value, estimate.freedom) == (3.0, 2)
     assert estimate.error == pytest.approx(stats.sem([1.0, 2.0, 6.0]))

@@ -7,14 +7,14 @@ from analysis.pair_correlation import pair_correlation
 LENGTH = 40.0
 
 
-def test_two_points_across_the_boundary():
+def test_two_points_across_the_boundary() -> None:
     # 39 and 1 are 2 apart: both ordered pairs in the bin (2 +- 0.5), 20 bins, 2 pairs in all
     distance, g = pair_correlation(np.array([[39.0, 1.0]]), LENGTH, 1.0)
     assert distance[:3].tolist() == [0.5, 1.5, 2.5]
     assert g.tolist() == [0.0, 0.0, 20.0] + [0.0] * 17
 
 
-def test_unwrapped_positions_give_the_same():
+def test_unwrapped_positions_give_the_same() -> None:
     x = np.random.default_rng(0).uniform(0, LENGTH, (5, 4))
     far = x + LENGTH * np.array([0, 3, -2, 100])
     assert pair_correlation(far, LENGTH, 1.0)[1] == pytest.approx(
@@ -22,7 +22,7 @@ def test_unwrapped_positions_give_the_same():
     )
 
 
-def test_ideal_gas_is_one_everywhere():
+def test_ideal_gas_is_one_everywhere() -> None:
     frames, points = 4000, 5
     x = np.random.default_rng(1).uniform(0, LENGTH, (frames, points))
     _, g = pair_correlation(x, LENGTH, 1.0)
@@ -31,7 +31,7 @@ def test_ideal_gas_is_one_everywhere():
     assert g.mean() == pytest.approx(1, rel=1e-12)  # every pair is counted once
 
 
-def test_hard_rods_on_a_ring_have_the_exact_correlation():
+def test_hard_rods_on_a_ring_have_the_exact_correlation() -> None:
     """Tonks gas: the k-th neighbour is at k sigma + (L - N sigma) Beta(k, N - k)."""
     random = np.random.default_rng(2)
     frames, rods, sigma = 20_000, 5, 4.0
@@ -53,6 +53,6 @@ def test_hard_rods_on_a_ring_have_the_exact_correlation():
     assert np.all(np.abs(g - exact) <= 4.7 * 2 * np.sqrt(pairs) / pairs.max() * exact.max())
 
 
-def test_single_point():
+def test_single_point() -> None:
     with pytest.raises(ValueError, match="at least 2 points"):
         pair_correlation(np.zeros((3, 1)), LENGTH, 1.0)

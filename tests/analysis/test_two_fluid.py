@@ -2,25 +2,30 @@
 
 import numpy as np
 import pytest
+from numpy.typing import NDArray
 
 from analysis.two_fluid import TwoFluid
+
+Array = NDArray[np.float64]
 
 CELL = 1.0
 C, C0 = 5.0, 0.02  # J = rho (C0 + C rho): convex, as in the channel
 
 
-def points_in_a_fluid_at_rest():
+def points_in_a_fluid_at_rest() -> TwoFluid:
     """Colloids without area that drag no fluid: one conservation law is left."""
     return TwoFluid(lambda r: C0 + C * r, np.zeros_like, 0.0, 12.0, 0.0, 10.0)
 
 
-def block(density, left=100, right=300, cells=600, outside=0.0):
+def block(
+    density: float, left: int = 100, right: int = 300, cells: int = 600, outside: float = 0.0
+) -> Array:
     rho = np.full(cells, outside)
     rho[left:right] = density
     return rho
 
 
-def test_shock_moves_at_the_rankine_hugoniot_velocity():
+def test_shock_moves_at_the_rankine_hugoniot_velocity() -> None:
     high, low, times = 0.02, 0.005, np.array([200.0, 400.0])
     rho, fluid = points_in_a_fluid_at_rest().solve(block(high, outside=low), CELL, times)
     velocity = C0 + C * (high + low)  # (J(high) - J(low)) / (high - low)
@@ -33,7 +38,7 @@ def test_shock_moves_at_the_rankine_hugoniot_velocity():
     assert fluid == pytest.approx(1.0, abs=1e-12)
 
 
-def test_rarefaction_fan_behind_the_block_and_convergence():
+def test_rarefaction_fan_behind_the_block_and_convergence() -> None:
     high, time = 0.02, 800.0
     errors = []
     for refined in (1, 2, 4):
@@ -48,7 +53,7 @@ def test_rarefaction_fan_behind_the_block_and_convergence():
     assert errors[2] < errors[1] / 1.5
 
 
-def test_concave_current_turns_the_ends_round():
+def test_concave_current_turns_the_ends_round() -> None:
     law = TwoFluid(lambda r: 0.2 * (1 - r / 0.04), np.zeros_like, 0.0, 12.0, 0.0, 10.0)
     rho, _ = law.solve(block(0.02), CELL, [800.0])
     rising, falling = (
@@ -57,7 +62,7 @@ def test_concave_current_turns_the_ends_round():
     assert rising < 12 < 60 < falling  # J' = 0.2 (1 - 50 rho): shock at the tail, fan at the head
 
 
-def test_pressure_diffuses_to_balance_colloids_that_are_held():
+def test_pressure_diffuses_to_balance_colloids_that_are_held() -> None:
     pull, permeability, n_f, cells = 0.3, 0.2, 10.0, 100
     law = TwoFluid(np.zeros_like, lambda r: np.full_like(r, pull), permeability, 12.0, 0.0, n_f)
     k = 2 * np.pi / (cells * CELL)
@@ -70,7 +75,7 @@ def test_pressure_diffuses_to_balance_colloids_that_are_held():
     assert amplitude == pytest.approx(final * (1 - np.exp(-rate * times)), rel=0.003)
 
 
-def test_both_contents_are_conserved_and_fluid_piles_up_at_the_head():
+def test_both_contents_are_conserved_and_fluid_piles_up_at_the_head() -> None:
     law = TwoFluid(
         lambda r: 0.02 + 5.7 * r, lambda r: np.full_like(r, 0.3), 0.19, 12.57, 12.57, 10.0
     )
@@ -86,7 +91,7 @@ def test_both_contents_are_conserved_and_fluid_piles_up_at_the_head():
     assert rho.min() > -1e-12
 
 
-def test_uniform_state_stays_and_moves_with_the_measured_speed():
+def test_uniform_state_stays_and_moves_with_the_measured_speed() -> None:
     law = TwoFluid(lambda r: 0.02 + 5.7 * r, lambda r: np.full_like(r, 0.3), 0.19, 12.57, 12.57, 10)
     rho, fluid = law.solve(np.full(50, 0.015), CELL, [200.0])
     assert rho == pytest.approx(0.015)

@@ -6,9 +6,12 @@ Everything here is written from the text, not from `lattice`: tests compare the 
 from dataclasses import dataclass, field
 
 import numpy as np
+from numpy.typing import NDArray
 
 from lattice.completion import complete_shock
 from lattice.models import LatticeGas, charge_gas, internal_state_gas
+
+Array = NDArray[np.float64]
 
 SIZES = range(2, 8)
 TOLERANCE = 1e-13  # times the largest rate, as issue 4 asks
@@ -31,18 +34,18 @@ class Case:
         """Rates by name: case.w24, case.h1, case.alpha1."""
         for table in ("w", "left", "right", "h"):
             if name in self.__dict__.get(table, {}):
-                return self.__dict__[table][name]
+                return float(self.__dict__[table][name])
         raise AttributeError(name)
 
     @property
-    def weights1(self) -> np.ndarray:
+    def weights1(self) -> Array:
         return self._weights(self.z1)
 
     @property
-    def weights2(self) -> np.ndarray:
+    def weights2(self) -> Array:
         return self._weights(self.z2)
 
-    def _weights(self, z: float) -> np.ndarray:
+    def _weights(self, z: float) -> Array:
         third = self.ratio * (z**2 if self.gas.family == "charge" else z)
         return np.array([1.0, z, third])
 
@@ -93,7 +96,7 @@ def stationary_charge(seed: int = 1) -> Case:
 
 def shock_charge(kind: str) -> Case:
     """Model with a one-sided or a two-sided shock, both closing at the ends."""
-    ends = {"left": {"alpha3": 0.2}, "right": {"delta3": 0.3, "beta2": 0.4}}
+    left, right = {"alpha3": 0.2}, {"delta3": 0.3, "beta2": 0.4}
     if kind == "one-sided":
         model = complete_shock(
             "charge",
@@ -101,10 +104,12 @@ def shock_charge(kind: str) -> Case:
             0.0,
             {"w42": 1.1, "w53": 0.9, "w35": 0.3, "w75": 0.2, "w86": 0.4},
             ratio=0.5 / 0.9,
-            **ends,
+            left=left,
+            right=right,
         )
     else:
-        model = complete_shock("charge", 0.6, 0.84, {"w42": 1.1, "w53": 0.4, "w35": 0.3}, **ends)
+        given = {"w42": 1.1, "w53": 0.4, "w35": 0.3}
+        model = complete_shock("charge", 0.6, 0.84, given, left=left, right=right)
     rates = model.rates
     r = (rates["w35"] + rates["w75"]) / (rates["w53"] + rates["w57"])
     return Case(rates, model.left, model.right, model.z1, model.z2, r, model.gas())
@@ -215,7 +220,7 @@ def shock_internal() -> Case:
     )
 
 
-def pair_matrix(w: dict[str, float]) -> np.ndarray:
+def pair_matrix(w: dict[str, float]) -> Array:
     """-h_{k,k+1}: w_ij takes pair j to pair i, (2.29) or (2.87)."""
     matrix = np.zeros((9, 9))
     for name, rate in w.items():
@@ -225,7 +230,7 @@ def pair_matrix(w: dict[str, float]) -> np.ndarray:
     return matrix
 
 
-def end_matrix(case: Case, side: str) -> np.ndarray:
+def end_matrix(case: Case, side: str) -> Array:
     """-b1 of (2.18) or -bL of (2.19), the latter with delta3 in row 3, column 2."""
     a, g = ("alpha", "gamma") if side == "left" else ("delta", "beta")
     a1, a2, a3 = (getattr(case, f"{a}{i}") for i in (1, 2, 3))
@@ -233,16 +238,16 @@ def end_matrix(case: Case, side: str) -> np.ndarray:
     return np.array([[-(a1 + a2), g1, g2], [a1, -(g1 + a3), g3], [a2, a3, -(g2 + g3)]])
 
 
-def act(local: np.ndarray, first: int, sites: int, vector: np.ndarray) -> np.ndarray:
+def act(local: Array, first: int, sites: int, vector: Array) -> Array:
     """A local operator on site `first` (from 1) or on the bond (first, first + 1)."""
     before = np.eye(3 ** (first - 1))
     span = 1 if len(local) == 3 else 2
     after = np.eye(3 ** (sites - first + 1 - span))
     v = vector.reshape(len(before), len(local), len(after))
-    return np.einsum("ij,ajb->aib", local, v).ravel()
+    return np.asarray(np.einsum("ij,ajb->aib", local, v).ravel())
 
 
-def full_flow(case: Case, sites: int, vector: np.ndarray) -> np.ndarray:
+def full_flow(case: Case, sites: int, vector: Array) -> Array:
     """-H|v> of (2.17), term by term."""
     flow = act(end_matrix(case, "left"), 1, sites, vector)
     flow += act(end_matrix(case, "right"), sites, sites, vector)
@@ -251,7 +256,7 @@ def full_flow(case: Case, sites: int, vector: np.ndarray) -> np.ndarray:
     return flow
 
 
-def product(weights: list[np.ndarray]) -> np.ndarray:
+def product(weights: list[Array]) -> Array:
     """Normalised tensor product, site 1 first."""
     vector = np.ones(1)
     for w in weights:
@@ -259,31 +264,37 @@ def product(weights: list[np.ndarray]) -> np.ndarray:
     return vector
 
 
-def shock(case: Case, sites: int, k: int) -> np.ndarray:
+def shock(case: Case, sites: int, k: int) -> Array:
     """|k> of (2.61) or (2.97)."""
     return product([case.weights1] * k + [case.weights2] * (sites - k))
 
 
-def number(case: Case, species: str) -> np.ndarray:
+def number(case: Case, species: str) -> Array:
     """n^A or n^B as a diagonal matrix on one site (2.130)."""
     return np.diag([float(state == species) for state in case.gas.states])
 
 
-def random_distribution(sites: int, seed: int = 5) -> np.ndarray:
+def random_distribution(sites: int, seed: int = 5) -> Array:
     """A distribution with correlations everywhere, of no special form."""
     vector = np.random.default_rng(seed).exponential(size=3**sites)
-    return vector / vector.sum()
+    return np.asarray(vector / vector.sum())
 
 
-def mean(case: Case, sites: int, vector: np.ndarray, pattern: str, first: int) -> float:
+def mean(case: Case, sites: int, vector: Array, pattern: str, first: int) -> float:
     """<n^a_k n^b_{k+1} ...> for a pattern of states such as "A0", starting at site `first`."""
     table = vector.reshape((3,) * sites)
-    index = [slice(None)] * sites
+    index: list[slice | int] = [slice(None)] * sites
     for offset, state in enumerate(pattern):
         index[first - 1 + offset] = case.gas.states.index(state)
     return float(table[tuple(index)].sum())
 
 
-def size_of(vector: np.ndarray) -> float:
+def present(end: Array | None) -> Array:
+    """The rates at an end of an open chain."""
+    assert end is not None
+    return end
+
+
+def size_of(vector: Array) -> float:
     """1-norm: total probability per unit of time that a residual moves."""
     return float(np.abs(vector).sum())

@@ -13,18 +13,19 @@ from lattice.matrix_product import asep_stationary
 from lattice.models import RateError, asep, charge_gas, internal_state_gas
 
 
-def tasep_norm(sites, alpha, beta):
+def tasep_norm(sites: int, alpha: Fraction, beta: Fraction) -> Fraction:
     """<W|(D + E)^L|V> of Derrida, Evans, Hakim and Pasquier (J. Phys. A 26, 1493 (1993)), exact."""
     if sites == 0:
         return Fraction(1)
     a, b = 1 / alpha, 1 / beta
-    return sum(
+    terms = (
         Fraction(k, sites)
         * comb(2 * sites - k - 1, sites - 1)
         * (b ** (k + 1) - a ** (k + 1))
         / (b - a)
         for k in range(1, sites + 1)
     )
+    return sum(terms, Fraction(0))
 
 
 @pytest.mark.parametrize("sites", [1, 10, 100, 1000])
@@ -37,7 +38,7 @@ def tasep_norm(sites, alpha, beta):
         (Fraction(1, 5), Fraction(201, 1000)),
     ],
 )
-def test_tasep_current_against_exact_rationals(sites, alpha, beta):
+def test_tasep_current_against_exact_rationals(sites: int, alpha: Fraction, beta: Fraction) -> None:
     exact = tasep_norm(sites - 1, alpha, beta) / tasep_norm(sites, alpha, beta)
     current, _ = asep_stationary(sites, 1.0, 0.0, float(alpha), float(beta))
     assert current == pytest.approx(float(exact), rel=1e-13)
@@ -55,7 +56,7 @@ def test_tasep_current_against_exact_rationals(sites, alpha, beta):
     ],
 )
 @pytest.mark.parametrize("sites", [2, 3, 8, 10])
-def test_matrix_product_against_the_full_generator(rates, sites):
+def test_matrix_product_against_the_full_generator(rates: tuple[float, ...], sites: int) -> None:
     p, q, alpha, beta, gamma, delta = rates
     model = asep(*rates)
     state = generator.stationary_state(model, sites, tolerance=1e-13)
@@ -66,7 +67,7 @@ def test_matrix_product_against_the_full_generator(rates, sites):
 
 
 @pytest.mark.parametrize(("alpha", "beta"), list(itertools.product([0.2, 0.4, 0.7, 0.9], repeat=2)))
-def test_phase_diagram_of_the_asep_at_a_thousand_sites(alpha, beta):
+def test_phase_diagram_of_the_asep_at_a_thousand_sites(alpha: float, beta: float) -> None:
     """Bulk density and current of the matrix product obey the extremal-current principle."""
     p, q, sites = 1.0, 0.25, 1000
     rates = (alpha * 0.75, beta * 0.75)
@@ -95,7 +96,7 @@ def test_phase_diagram_of_the_asep_at_a_thousand_sites(alpha, beta):
         assert middle == pytest.approx(1 - beta, abs=1e-10)
 
 
-def test_algebraic_profile_of_the_maximal_current_phase():
+def test_algebraic_profile_of_the_maximal_current_phase() -> None:
     """alpha = beta = 1: rho = 1/2 + (1 - 2x)/(2 sqrt(pi L x (1 - x))), x = k/L, 1 << k << L - k."""
     _, profile = asep_stationary(1000, 1.0, 0.0, 1.0, 1.0)
     k = np.arange(20, 400)
@@ -104,7 +105,7 @@ def test_algebraic_profile_of_the_maximal_current_phase():
     assert profile[k - 1] - 0.5 == pytest.approx(law, rel=0.01)  # next order is 1/k
 
 
-def test_refusals():
+def test_refusals() -> None:
     with pytest.raises(RateError, match="p = q"):
         asep_stationary(10, 1.0, 1.0, 0.5, 0.5)
     with pytest.raises(RateError, match="must be positive"):
@@ -116,7 +117,7 @@ def test_refusals():
 
 
 @pytest.mark.parametrize("family", ["charge", "internal-state", "lumped"])
-def test_three_state_models_contain_the_asep(family):
+def test_three_state_models_contain_the_asep(family: str) -> None:
     """A in vacancies, vacancies in A, and A + B of a lumpable internal-state model, at L = 6."""
     p, q, alpha, beta, gamma, delta = 1.0, 0.3, 0.4, 0.5, 0.2, 0.1
     sites = 6

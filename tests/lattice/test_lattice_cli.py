@@ -2,17 +2,22 @@
 
 import json
 import re
+from collections.abc import Callable
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 import pytest
 import tomli_w
-from lattice_paper import shock_charge, shock_internal
-from typer.testing import CliRunner
+from typer.testing import CliRunner, Result
 
 from lattice import generator, shocks, spec
 from lattice.models import charge_gas
 from narrows.cli import app
+from tests.lattice.lattice_paper import Case, shock_charge, shock_internal
+
+Data = dict[str, Any]
+Change = Callable[[Data], object]
 
 EXAMPLES = sorted((Path(__file__).parents[2] / "docs" / "examples" / "lattice").glob("*.toml"))
 KEYS = {
@@ -30,11 +35,11 @@ KEYS = {
 }
 
 
-def run(*arguments):
+def run(*arguments: object) -> Result:
     return CliRunner().invoke(app, ["lattice", *(str(a) for a in arguments)])
 
 
-def contents(case):
+def contents(case: Case) -> Data:
     """FILE of a test case; the internal-state family with its 24 rates."""
     return {
         "family": case.gas.family,
@@ -46,7 +51,7 @@ def contents(case):
     }
 
 
-def write(path, data):
+def write(path: Path, data: Data) -> Path:
     if path.suffix == ".json":
         path.write_text(json.dumps(data))
     else:
@@ -54,15 +59,16 @@ def write(path, data):
     return path
 
 
-def checked(path, *extra):
+def checked(path: Path, *extra: object) -> Data:
     out = path.with_name("out.json")
     result = run("check", path, "--sites", 5, "--json", out, *extra)
     assert result.exit_code == 0, result.output
-    return json.loads(out.read_text())
+    data: Data = json.loads(out.read_text())
+    return data
 
 
 @pytest.mark.parametrize("path", EXAMPLES, ids=lambda p: p.stem)
-def test_examples_are_on_their_manifold(path, tmp_path):
+def test_examples_are_on_their_manifold(path: Path, tmp_path: Path) -> None:
     out = tmp_path / "out.json"
     result = run("check", path, "--sites", 6, "--json", out)
     assert result.exit_code == 0, result.output
@@ -76,7 +82,7 @@ def test_examples_are_on_their_manifold(path, tmp_path):
     assert data["shock_diffusion"] == (data["d2"] + data["d1"]) / 2
 
 
-def test_four_examples_are_there():
+def test_four_examples_are_there() -> None:
     assert [p.stem for p in EXAMPLES] == ["asep", "internal_state", "one_sided", "two_sided"]
 
 
@@ -90,7 +96,7 @@ def test_four_examples_are_there():
     ids=["one-sided", "two-sided", "internal-state"],
 )
 @pytest.mark.parametrize("suffix", [".toml", ".json"])
-def test_check_reports_the_closed_forms(case, suffix, tmp_path):
+def test_check_reports_the_closed_forms(case: Case, suffix: str, tmp_path: Path) -> None:
     data = checked(
         write(tmp_path / f"model{suffix}", contents(case)), "--from", 2, "--times", "0.5,2"
     )
@@ -129,7 +135,7 @@ def test_check_reports_the_closed_forms(case, suffix, tmp_path):
     assert data["mean_shock_position"] == pytest.approx(expected, abs=1e-10)
 
 
-def test_h_r_c_and_24_rates_give_the_same_report(tmp_path):
+def test_h_r_c_and_24_rates_give_the_same_report(tmp_path: Path) -> None:
     case = shock_internal()
     long = checked(write(tmp_path / "w.toml", contents(case)))
     short = checked(
@@ -139,7 +145,7 @@ def test_h_r_c_and_24_rates_give_the_same_report(tmp_path):
         assert long[key] == pytest.approx(short[key], rel=1e-12)
 
 
-def test_fugacities_left_out_are_read_from_the_ends(tmp_path):
+def test_fugacities_left_out_are_read_from_the_ends(tmp_path: Path) -> None:
     case = shock_charge("two-sided")
     data = contents(case)
     del data["z1"], data["z2"]
@@ -147,7 +153,7 @@ def test_fugacities_left_out_are_read_from_the_ends(tmp_path):
     assert found["d1"] == pytest.approx(case.w["w42"] * case.nu2 / case.nu1, rel=1e-8)
 
 
-def test_off_the_manifold_says_which_condition_fails_and_by_how_much(tmp_path):
+def test_off_the_manifold_says_which_condition_fails_and_by_how_much(tmp_path: Path) -> None:
     case = shock_charge("two-sided")
     data = contents(case)
     data["rates"]["w37"] += 0.125
@@ -165,7 +171,7 @@ def test_off_the_manifold_says_which_condition_fails_and_by_how_much(tmp_path):
     assert re.search(r"\(2\.171\) w37 = w24 - \(1\+X\) w35: off by 0\.125", result.stdout)
 
 
-def test_stationary_without_a_walk(tmp_path):
+def test_stationary_without_a_walk(tmp_path: Path) -> None:
     """Rates of (2.36) only, ends that hold both fugacities: stationary, no random walk."""
     bulk = {
         "w24": 1.0,
@@ -189,9 +195,12 @@ def test_stationary_without_a_walk(tmp_path):
     )
     model = charge_gas(bulk).with_reservoirs(0.6, 1.4)
     ends = {}
-    for side, names in (("left", ("alpha", "gamma")), ("right", ("delta", "beta"))):
+    for side, names, rates in (
+        ("left", ("alpha", "gamma"), model.boundary_rates("left")),
+        ("right", ("delta", "beta"), model.boundary_rates("right")),
+    ):
         labels = [f"{name}{i}" for name in names for i in (1, 2, 3)]
-        ends[side] = dict(zip(labels, model.boundary_rates(side), strict=True))
+        ends[side] = dict(zip(labels, rates, strict=True))
     data = checked(
         write(
             tmp_path / "m.toml", {"family": "charge", "z1": 0.6, "z2": 1.4, "rates": bulk, **ends}
@@ -201,7 +210,7 @@ def test_stationary_without_a_walk(tmp_path):
     assert data["random_walk_residual"] > 1e-2
 
 
-def test_position_off_the_manifold_is_the_equimolar_one(tmp_path):
+def test_position_off_the_manifold_is_the_equimolar_one(tmp_path: Path) -> None:
     case = shock_charge("two-sided")
     data = contents(case)
     data["rates"]["w37"] += 0.125
@@ -211,7 +220,7 @@ def test_position_off_the_manifold_is_the_equimolar_one(tmp_path):
     assert found["mean_shock_position"][0] != pytest.approx(2, abs=1e-3)
 
 
-def test_ring_and_equal_fugacities(tmp_path):
+def test_ring_and_equal_fugacities(tmp_path: Path) -> None:
     case = shock_charge("two-sided")
     ring = {key: value for key, value in contents(case).items() if key not in ("left", "right")}
     data = checked(write(tmp_path / "ring.toml", ring))
@@ -234,7 +243,7 @@ def test_ring_and_equal_fugacities(tmp_path):
     assert data["stationary_profile"]["rho_A"] == pytest.approx([data["densities"]["rho_A"][0]] * 5)
 
 
-def spoiled(tmp_path, change, suffix=".toml"):
+def spoiled(tmp_path: Path, change: Change, suffix: str = ".toml") -> Path:
     data = contents(shock_charge("two-sided"))
     change(data)
     return write(tmp_path / f"bad{suffix}", data)
@@ -280,7 +289,7 @@ BAD = {
 
 
 @pytest.mark.parametrize("name", BAD)
-def test_bad_files_get_one_message_and_exit_code_2(name, tmp_path):
+def test_bad_files_get_one_message_and_exit_code_2(name: str, tmp_path: Path) -> None:
     change, message = BAD[name]
     result = run("check", spoiled(tmp_path, change), "--sites", 4)
     assert result.exit_code == 2
@@ -290,7 +299,7 @@ def test_bad_files_get_one_message_and_exit_code_2(name, tmp_path):
     assert isinstance(result.exception, SystemExit)
 
 
-def test_json_with_nan_and_broken_syntax(tmp_path):
+def test_json_with_nan_and_broken_syntax(tmp_path: Path) -> None:
     bad = spoiled(tmp_path, lambda d: d["rates"].update(w24=float("nan")), ".json")
     assert "must be finite" in run("check", bad).stderr
     broken = tmp_path / "broken.toml"
@@ -303,7 +312,7 @@ def test_json_with_nan_and_broken_syntax(tmp_path):
     assert "No such file" in result.stderr
 
 
-def test_inconsistent_ends_still_leave_the_residuals_in_OUT(tmp_path):
+def test_inconsistent_ends_still_leave_the_residuals_in_OUT(tmp_path: Path) -> None:
     out = tmp_path / "out.json"
     path = spoiled(tmp_path, lambda d: d["left"].update(alpha3=3.0))
     assert run("check", path, "--json", out).exit_code == 2
@@ -311,7 +320,7 @@ def test_inconsistent_ends_still_leave_the_residuals_in_OUT(tmp_path):
 
 
 @pytest.mark.parametrize("sites", [25, 60])
-def test_too_many_sites_names_the_bytes(sites):
+def test_too_many_sites_names_the_bytes(sites: int) -> None:
     result = run("check", EXAMPLES[0], "--sites", sites)
     assert result.exit_code == 2
     assert re.search(rf"L = {sites} .*needs [\d.]+e\+\d+ bytes of memory", result.stderr)
@@ -327,13 +336,13 @@ def test_too_many_sites_names_the_bytes(sites):
         (("--json", "/no/such/folder/out.json"), "No such file or directory"),
     ],
 )
-def test_bad_options(options, message):
+def test_bad_options(options: tuple[str, ...], message: str) -> None:
     result = run("check", EXAMPLES[1], "--sites", 4, *options)
     assert result.exit_code == 2
     assert re.search(message, result.stderr)
 
 
-def test_simulate_writes_results_and_figures(tmp_path):
+def test_simulate_writes_results_and_figures(tmp_path: Path) -> None:
     out = tmp_path / "out.json"
     path = next(p for p in EXAMPLES if p.stem == "one_sided")
     arguments = (
@@ -366,14 +375,14 @@ def test_simulate_writes_results_and_figures(tmp_path):
     assert json.loads(out.read_text()) == data  # the seed decides
 
 
-def test_simulate_warns_where_the_shock_meets_an_end():
+def test_simulate_warns_where_the_shock_meets_an_end() -> None:
     path = next(p for p in EXAMPLES if p.stem == "one_sided")
     result = run("simulate", path, "--sites", 40, "--replicas", 2, "--time", 100)
     assert result.exit_code == 0
     assert "may reach an end" in result.stderr
 
 
-def test_hydro_writes_results_and_figures(tmp_path):
+def test_hydro_writes_results_and_figures(tmp_path: Path) -> None:
     out = tmp_path / "out.json"
     path = next(p for p in EXAMPLES if p.stem == "internal_state")
     result = run(
@@ -401,7 +410,7 @@ def test_hydro_writes_results_and_figures(tmp_path):
         assert (tmp_path / f"{name}.png").stat().st_size > 5000
 
 
-def test_read_returns_what_the_file_says():
+def test_read_returns_what_the_file_says() -> None:
     model, z1, z2 = spec.read(next(p for p in EXAMPLES if p.stem == "asep"))
     assert (z1, z2) == (0.25, 1.25)
     assert model.w(2, 4) == 1.0  # A0 -> 0A

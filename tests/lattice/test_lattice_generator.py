@@ -1,19 +1,37 @@
 """The exact engine against loops over configurations and textbook cases."""
 
 import itertools
+from collections.abc import Sequence
 
 import numpy as np
 import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
-from lattice_paper import random_distribution, shock_internal, stationary_charge
+from numpy.typing import NDArray
 from scipy.linalg import expm, null_space
 
 from lattice import generator
-from lattice.models import BULK_NAMES, LEFT_NAMES, RIGHT_NAMES, asep, charge_gas, internal_state_gas
+from lattice.models import (
+    BULK_NAMES,
+    LEFT_NAMES,
+    RIGHT_NAMES,
+    Family,
+    LatticeGas,
+    asep,
+    charge_gas,
+    internal_state_gas,
+)
+from tests.lattice.lattice_paper import (
+    present,
+    random_distribution,
+    shock_internal,
+    stationary_charge,
+)
+
+Array = NDArray[np.float64]
 
 
-def random_gas(family, seed, periodic=False):
+def random_gas(family: Family, seed: int, periodic: bool = False) -> LatticeGas:
     rng = np.random.default_rng(seed)
     bulk = {name: float(rng.uniform(0.1, 1)) for name in BULK_NAMES[family]}
     left = None if periodic else {name: float(rng.uniform(0.1, 1)) for name in LEFT_NAMES}
@@ -22,14 +40,14 @@ def random_gas(family, seed, periodic=False):
     return build(bulk, left, right)
 
 
-def by_loops(model, sites):
+def by_loops(model: LatticeGas, sites: int) -> Array:
     """The generator from a visit to every configuration: slow and obvious."""
     s = model.size
     states = list(itertools.product(range(s), repeat=sites))
     index = {state: i for i, state in enumerate(states)}
     matrix = np.zeros((len(states),) * 2)
 
-    def add(state, new, rate):
+    def add(state: tuple[int, ...], new: Sequence[int], rate: float) -> None:
         matrix[index[tuple(new)], index[state]] += rate
         matrix[index[state], index[state]] -= rate
 
@@ -56,7 +74,9 @@ def by_loops(model, sites):
 @pytest.mark.parametrize("periodic", [False, True])
 @pytest.mark.parametrize("family", ["charge", "internal-state"])
 @pytest.mark.parametrize("sites", [2, 3, 4, 5])
-def test_generator_against_loops_over_configurations(family, sites, periodic):
+def test_generator_against_loops_over_configurations(
+    family: Family, sites: int, periodic: bool
+) -> None:
     model = random_gas(family, 3, periodic)
     expected = by_loops(model, sites)
     stored = generator.generator(model, sites)
@@ -68,7 +88,7 @@ def test_generator_against_loops_over_configurations(family, sites, periodic):
 
 @settings(max_examples=25, deadline=None)
 @given(st.integers(0, 10**6), st.sampled_from(["charge", "internal-state"]), st.booleans())
-def test_probability_and_charge_are_conserved(seed, family, periodic):
+def test_probability_and_charge_are_conserved(seed: int, family: Family, periodic: bool) -> None:
     model = random_gas(family, seed, periodic)
     flow = generator.apply(model, 4, random_distribution(4, seed))
     assert abs(flow.sum()) < 1e-14
@@ -79,7 +99,7 @@ def test_probability_and_charge_are_conserved(seed, family, periodic):
 
 @pytest.mark.parametrize("family", ["charge", "internal-state"])
 @pytest.mark.parametrize("stored", [True, False])
-def test_stationary_state_against_the_null_space(family, stored):
+def test_stationary_state_against_the_null_space(family: Family, stored: bool) -> None:
     model = random_gas(family, 5)
     matrix = by_loops(model, 5)
     kernel = null_space(matrix)[:, 0]
@@ -87,7 +107,7 @@ def test_stationary_state_against_the_null_space(family, stored):
     assert np.abs(solved - kernel / kernel.sum()).sum() < 1e-11
 
 
-def test_stationary_state_of_eight_sites_is_solved_by_iteration_to_its_residual():
+def test_stationary_state_of_eight_sites_is_solved_by_iteration_to_its_residual() -> None:
     model = random_gas("charge", 6)
     stored = generator.stationary_state(model, 8)
     free = generator.stationary_state(model, 8, stored=False)
@@ -99,7 +119,7 @@ def test_stationary_state_of_eight_sites_is_solved_by_iteration_to_its_residual(
 
 
 @pytest.mark.parametrize("family", ["charge", "internal-state"])
-def test_evolution_against_the_matrix_exponential(family):
+def test_evolution_against_the_matrix_exponential(family: Family) -> None:
     model = random_gas(family, 7)
     initial = random_distribution(4)
     times = [0.0, 0.3, 2.0, 15.0]
@@ -110,12 +130,12 @@ def test_evolution_against_the_matrix_exponential(family):
         assert state.min() >= 0
 
 
-def test_evolution_refuses_times_out_of_order():
+def test_evolution_refuses_times_out_of_order() -> None:
     with pytest.raises(ValueError, match="increasing"):
         generator.evolve(asep(1, 0, 1, 1), 3, np.ones(8) / 8, [2.0, 1.0])
 
 
-def test_tasep_of_two_sites_by_hand():
+def test_tasep_of_two_sites_by_hand() -> None:
     """alpha = beta = p = 1: weights of 00, 0A, A0, AA are 1, 1, 2, 1 over 5, J = 2/5."""
     model = asep(1, 0, 1, 1)
     state = generator.stationary_state(model, 2)
@@ -123,7 +143,7 @@ def test_tasep_of_two_sites_by_hand():
     assert generator.bond_currents(model, 2, state) == pytest.approx([0.4], abs=1e-15)
 
 
-def test_correlations_against_direct_sums():
+def test_correlations_against_direct_sums() -> None:
     case = stationary_charge()
     state = random_distribution(4)
     table = state.reshape((3,) * 4)
@@ -145,18 +165,18 @@ def test_correlations_against_direct_sums():
     assert np.abs(off_diagonal).max() < 1e-15
 
 
-def test_stationary_current_is_uniform_and_fed_by_the_ends():
+def test_stationary_current_is_uniform_and_fed_by_the_ends() -> None:
     model = shock_internal().gas
     sites = 5
     state = generator.stationary_state(model, sites)
     currents = generator.bond_currents(model, sites, state)
     assert np.ptp(currents) < 1e-14
     single = generator.site_probabilities(model, sites, state)
-    injected = model.conserved @ model.left @ single[0]
+    injected = model.conserved @ present(model.left) @ single[0]
     assert injected == pytest.approx(currents[0], abs=1e-14)
 
 
-def test_ring_has_one_stationary_state_per_charge():
+def test_ring_has_one_stationary_state_per_charge() -> None:
     model = random_gas("charge", 9, periodic=True)
     with pytest.raises(generator.NoUniqueState, match="9 stationary states at L = 4"):
         generator.stationary_state(model, 4)
@@ -168,7 +188,7 @@ def test_ring_has_one_stationary_state_per_charge():
     assert (single @ model.conserved).sum() == pytest.approx(3, abs=1e-13)
 
 
-def test_absorbing_configuration_is_found():
+def test_absorbing_configuration_is_found() -> None:
     """Only 0A -> A0 and a left end that turns all into A: everything ends in AAAA."""
     model = charge_gas({"w24": 1.0}, {"gamma1": 1.0, "gamma2": 0.0}, {"beta1": 0.5})
     start = generator.product_vector([np.array([0.3, 0.7, 0.0])] * 4)
@@ -176,7 +196,7 @@ def test_absorbing_configuration_is_found():
     assert state[0] == pytest.approx(1, abs=1e-14)
 
 
-def test_too_large_names_the_bytes():
+def test_too_large_names_the_bytes() -> None:
     model = random_gas("charge", 1)
     with pytest.raises(generator.TooLarge, match=r"L = 40 needs [\d.]+e\+\d+ bytes"):
         generator.stationary_state(model, 40)
@@ -186,6 +206,6 @@ def test_too_large_names_the_bytes():
         generator.generator(model, 30)
 
 
-def test_a_chain_has_two_sites():
+def test_a_chain_has_two_sites() -> None:
     with pytest.raises(ValueError, match="at least 2 sites"):
         generator.generator(asep(1, 0, 1, 1), 1)

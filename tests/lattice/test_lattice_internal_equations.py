@@ -3,10 +3,17 @@
 Names carry equation numbers; where the print is wrong the test shows the printed form fail.
 """
 
+from collections.abc import Callable
+
 import numpy as np
 import pytest
-from lattice_paper import (
+from numpy.typing import NDArray
+
+from lattice import generator, shocks
+from lattice.models import BULK_NAMES, CONSERVED, Family, internal_state_gas, pair_label
+from tests.lattice.lattice_paper import (
     SIZES,
+    Case,
     act,
     drive,
     end_matrix,
@@ -23,21 +30,24 @@ from lattice_paper import (
     stationary_internal,
 )
 
-from lattice import generator, shocks
-from lattice.models import BULK_NAMES, CONSERVED, internal_state_gas, pair_label
+Array = NDArray[np.float64]
 
 CASES = {"stationary": stationary_internal(2), "other": stationary_internal(5)}
 WALKER = shock_internal()
+P_Q = (
+    WALKER.h["h3"] + WALKER.ratio * WALKER.h["r4"],
+    WALKER.h["h1"] + WALKER.ratio * WALKER.h["r2"],
+)
 WRONG = 1e-3  # a printed form that fails misses by more than this fraction of the largest rate
 
 
 @pytest.fixture(params=CASES)
-def case(request):
+def case(request: pytest.FixtureRequest) -> Case:
     return CASES[request.param]
 
 
 @pytest.mark.parametrize("family", ["charge", "internal-state"])
-def test_2_4_2_79_rates_are_those_the_conservation_law_allows(family):
+def test_2_4_2_79_rates_are_those_the_conservation_law_allows(family: Family) -> None:
     c = CONSERVED[family]
     total = [c[a] + c[b] for a in range(3) for b in range(3)]
     allowed = {
@@ -48,7 +58,7 @@ def test_2_4_2_79_rates_are_those_the_conservation_law_allows(family):
     assert 72 - len(allowed) == {"charge": 62, "internal-state": 48}[family]
 
 
-def test_2_79_labels():
+def test_2_79_labels() -> None:
     table = {
         "w42": "0A A0",
         "w73": "0B B0",
@@ -72,11 +82,11 @@ def test_2_79_labels():
 
 
 @pytest.mark.parametrize("sites", SIZES)
-def test_2_22_2_88_product_measure_is_stationary(case, sites):
+def test_2_22_2_88_product_measure_is_stationary(case: Case, sites: int) -> None:
     assert size_of(full_flow(case, sites, product([case.weights1] * sites))) < case.bound
 
 
-def test_2_82_to_2_84_densities(case):
+def test_2_82_to_2_84_densities(case: Case) -> None:
     z, c = case.z1, case.ratio
     p = case.gas.marginal(z)
     nu = 1 + z + c * z
@@ -87,8 +97,8 @@ def test_2_82_to_2_84_densities(case):
     assert case.gas.density(z) == pytest.approx(slope, abs=1e-9)
 
 
-def test_2_85_2_86_PT_invariance_needs_w85_not_w86(case):
-    def broken(w):
+def test_2_85_2_86_PT_invariance_needs_w85_not_w86(case: Case) -> None:
+    def broken(w: dict[str, float]) -> float:
         matrix = pair_matrix(w)
         pair = np.kron(case.weights1, case.weights1)
         mirror = np.arange(9).reshape(3, 3).T.ravel()
@@ -105,7 +115,7 @@ def test_2_85_2_86_PT_invariance_needs_w85_not_w86(case):
     assert pair_label(8, "internal-state") == "BA"
 
 
-def test_2_87_matrix_from_the_rates_h_r_c(case):
+def test_2_87_matrix_from_the_rates_h_r_c(case: Case) -> None:
     c, h = case.ratio, case.h
     r = {i: h[f"r{i}"] for i in range(1, 10)}
     rows = [
@@ -124,7 +134,7 @@ def test_2_87_matrix_from_the_rates_h_r_c(case):
 
 
 @pytest.mark.parametrize("sites", SIZES)
-def test_2_89_to_2_93_hatted_generator_annihilates_the_measure(case, sites):
+def test_2_89_to_2_93_hatted_generator_annihilates_the_measure(case: Case, sites: int) -> None:
     e, ep = drive(case.h, case.ratio)
     z, c = case.z1, case.ratio
     field = e * number(case, "A") + ep * number(case, "B")
@@ -153,7 +163,9 @@ def test_2_89_to_2_93_hatted_generator_annihilates_the_measure(case, sites):
 
 @pytest.mark.parametrize("sites", SIZES)
 @pytest.mark.parametrize("name", ["h1", "h4", "h6", "r1", "r5", "r8"])
-def test_2_94_off_the_condition_the_product_measure_fails(case, sites, name):
+def test_2_94_off_the_condition_the_product_measure_fails(
+    case: Case, sites: int, name: str
+) -> None:
     h = {**case.h, name: case.h[name] + 0.1}
     model = internal_state_gas({**h, "c": case.ratio}, case.left, case.right)
     c = case.ratio
@@ -181,7 +193,7 @@ def test_2_94_off_the_condition_the_product_measure_fails(case, sites, name):
 
 
 @pytest.mark.parametrize("name", ["r7", "r2", "h2"])
-def test_2_94_does_not_name_r7_and_what_keeps_it_keeps_stationarity(case, name):
+def test_2_94_does_not_name_r7_and_what_keeps_it_keeps_stationarity(case: Case, name: str) -> None:
     h = {**case.h, name: case.h[name] + 0.1}
     if name == "r2":  # (1 - c)(r4 - r2)
         h["h5"] -= (1 - case.ratio) * 0.1
@@ -191,7 +203,7 @@ def test_2_94_does_not_name_r7_and_what_keeps_it_keeps_stationarity(case, name):
     assert np.abs(shocks.bond_residual(model, case.z1)).max() < case.bound
 
 
-def boundary_sides(case):
+def boundary_sides(case: Case) -> dict[str, tuple[float, float, float]]:
     """The three sides of (2.95) and of (2.96), as printed and with alpha3 z nu, delta3 z nu."""
     h, c, z, nu = case.h, case.ratio, case.z1, case.nu1
     first = (h["h1"] - h["h3"] + c * (2 * (h["r2"] - h["r4"]) + h["h2"] - h["h6"])) * z
@@ -226,22 +238,22 @@ def boundary_sides(case):
 
 
 @pytest.mark.parametrize("equation", ["2.95", "2.96"])
-def test_2_95_2_96_ends(case, equation):
+def test_2_95_2_96_ends(case: Case, equation: str) -> None:
     bulk, left, right = boundary_sides(case)[equation]
     assert left == pytest.approx(bulk, abs=30 * case.bound)
     assert right == pytest.approx(bulk, abs=30 * case.bound)
 
 
-def test_2_96_as_printed_fails(case):
+def test_2_96_as_printed_fails(case: Case) -> None:
     bulk, left, right = boundary_sides(case)["2.96 printed"]
     assert abs(left - bulk) > WRONG * case.gas.scale
     assert abs(right - bulk) > WRONG * case.gas.scale
 
 
 @pytest.mark.parametrize("sites", SIZES)
-def test_2_62_2_97_shock_random_walks(sites):
-    d1 = WALKER.p_q[1] * WALKER.nu2 / WALKER.nu1
-    d2 = WALKER.p_q[0] * WALKER.nu1 / WALKER.nu2
+def test_2_62_2_97_shock_random_walks(sites: int) -> None:
+    d1 = P_Q[1] * WALKER.nu2 / WALKER.nu1
+    d2 = P_Q[0] * WALKER.nu1 / WALKER.nu2
     for k in range(1, sites):
         change = full_flow(WALKER, sites, shock(WALKER, sites, k))
         walk = (
@@ -253,15 +265,9 @@ def test_2_62_2_97_shock_random_walks(sites):
         assert size_of(change) > WRONG * WALKER.gas.scale
 
 
-WALKER.p_q = (
-    WALKER.h["h3"] + WALKER.ratio * WALKER.h["r4"],
-    WALKER.h["h1"] + WALKER.ratio * WALKER.h["r2"],
-)
-
-
 @pytest.mark.parametrize("sites", SIZES)
-def test_2_98_to_2_101_ends_of_the_shock(sites):
-    case, (p, q) = WALKER, WALKER.p_q
+def test_2_98_to_2_101_ends_of_the_shock(sites: int) -> None:
+    case, (p, q) = WALKER, P_Q
     c, (e, ep) = case.ratio, drive(WALKER.h, WALKER.ratio)
     field = e * number(case, "A") + ep * number(case, "B")
     g = [(e + c * ep) * z / nu for z, nu in ((case.z1, case.nu1), (case.z2, case.nu2))]
@@ -286,7 +292,7 @@ def test_2_98_to_2_101_ends_of_the_shock(sites):
     )
 
 
-def six_equations(case, d1, d2):
+def six_equations(case: Case, d1: float, d2: float) -> dict[str, float]:
     """(2.102)-(2.107) with S of (2.108)."""
     c, h, z1, z2 = case.ratio, case.h, case.z1, case.z2
     e, ep = drive(h, c)
@@ -305,12 +311,12 @@ def six_equations(case, d1, d2):
 
 
 @pytest.mark.parametrize("equation", [f"2.{n}" for n in range(102, 108)])
-def test_2_102_to_2_108_on_the_manifold(equation):
+def test_2_102_to_2_108_on_the_manifold(equation: str) -> None:
     d1, d2 = shocks.hopping_rates(WALKER.gas, WALKER.z1, WALKER.z2)
     assert abs(six_equations(WALKER, d1, d2)[equation]) < 10 * WALKER.bound
 
 
-def test_2_102_to_2_107_are_the_bond_equations_off_the_manifold_too(case):
+def test_2_102_to_2_107_are_the_bond_equations_off_the_manifold_too(case: Case) -> None:
     """Six printed left sides are rows of the bond equations; the other three repeat (2.106)."""
     other = type(case)(case.w, case.left, case.right, 0.6, 0.9, case.ratio, case.gas, case.h)
     model, c = case.gas, case.ratio
@@ -343,9 +349,9 @@ def test_2_102_to_2_107_are_the_bond_equations_off_the_manifold_too(case):
         assert rest[row] == pytest.approx(factor * rest[4], abs=100 * case.bound)
 
 
-def test_2_109_to_2_116_manifold_rates_velocity_and_diffusion():
+def test_2_109_to_2_116_manifold_rates_velocity_and_diffusion() -> None:
     case, h, c = WALKER, WALKER.h, WALKER.ratio
-    p, q = case.p_q
+    p, q = P_Q
     d1, d2 = shocks.hopping_rates(case.gas, case.z1, case.z2)
     assert h["h6"] + h["r4"] == pytest.approx(p, abs=case.bound)  # (2.109)
     assert h["h2"] + h["r2"] == pytest.approx(q, abs=case.bound)  # (2.110)
@@ -369,7 +375,7 @@ def test_2_109_to_2_116_manifold_rates_velocity_and_diffusion():
 
 
 @pytest.mark.parametrize(("name", "equation"), [("h3", "2.109"), ("h1", "2.110"), ("r4", "2.109")])
-def test_2_109_to_2_111_are_necessary(name, equation):
+def test_2_109_to_2_111_are_necessary(name: str, equation: str) -> None:
     """Detune one rate, keep (2.94) with h4: stationary still, but no walk."""
     h, c = {**WALKER.h}, WALKER.ratio
     h[name] += 0.1
@@ -386,7 +392,7 @@ def test_2_109_to_2_111_are_necessary(name, equation):
 
 
 @pytest.mark.parametrize("sites", range(3, 8))
-def test_2_117_stationary_mixture_is_d2_over_d1(sites):
+def test_2_117_stationary_mixture_is_d2_over_d1(sites: int) -> None:
     """The printed (d1/d2)^k, on the model with e0 = d2 and eL = d1, is not stationary."""
     case = plain_ends()
     d1, d2 = shocks.hopping_rates(case.gas, case.z1, case.z2)
@@ -399,10 +405,10 @@ def test_2_117_stationary_mixture_is_d2_over_d1(sites):
         assert holds or rest > WRONG * case.gas.scale
 
 
-def plain_ends():
+def plain_ends() -> Case:
     """Internal-state shock model whose ends have alpha2 = c alpha1, e0 = d2 and eL = d1."""
     h, c, z1, z2 = WALKER.h, WALKER.ratio, WALKER.z1, WALKER.z2
-    (p, q), nu1, nu2 = WALKER.p_q, WALKER.nu1, WALKER.nu2
+    (p, q), nu1, nu2 = P_Q, WALKER.nu1, WALKER.nu2
     d1, d2 = q * nu2 / nu1, p * nu1 / nu2
     # e0 = nu1 (gamma1 + c gamma2)/(1+c) + (p-q)/nu2 = d2 and its mirror image give the sums below
     gamma = (d2 - (p - q) / nu2) * (1 + c) / nu1
@@ -424,7 +430,7 @@ def plain_ends():
 
 
 @pytest.mark.parametrize("sites", SIZES)
-def test_closure_at_the_ends_needs_alpha2_and_delta2(sites):
+def test_closure_at_the_ends_needs_alpha2_and_delta2(sites: int) -> None:
     """Interior (2.62) holds with any ends that keep the densities; the ends close only with
     alpha2 = c alpha1, delta2 = c delta1."""
     case = plain_ends()
@@ -443,8 +449,8 @@ def test_closure_at_the_ends_needs_alpha2_and_delta2(sites):
     assert not shocks.closes(bad)
 
 
-def test_end_rates_of_the_errata():
-    case, (p, q), c = WALKER, WALKER.p_q, WALKER.ratio
+def test_end_rates_of_the_errata() -> None:
+    case, (p, q), c = WALKER, P_Q, WALKER.ratio
     e0, el = shocks.end_rates(case.gas, case.z1, case.z2)
     assert e0 == pytest.approx(
         case.nu1 * (case.gamma1 + c * case.gamma2) / (1 + c) + (p - q) / case.nu2, rel=1e-12
@@ -454,7 +460,7 @@ def test_end_rates_of_the_errata():
     )
 
 
-def test_linear_profile_where_the_shock_has_no_bias():
+def test_linear_profile_where_the_shock_has_no_bias() -> None:
     """Text after (2.117): d1 = d2 puts the shock anywhere equally likely, if the ends do."""
     walk = shocks.ShockWalk(6, 0.4, 0.4, 0.4, 0.4)
     assert walk.stationary_mixture() == pytest.approx(np.full(7, 1 / 7), rel=1e-14)
@@ -465,7 +471,9 @@ def test_linear_profile_where_the_shock_has_no_bias():
     assert other[0] == pytest.approx(other[1] / 2, rel=1e-14)  # (2.117) needs the end rates
 
 
-def e_and_b(case, sites, vector, k):
+def e_and_b(
+    case: Case, sites: int, vector: Array, k: int
+) -> tuple[Callable[[str], float], Callable[[str], float]]:
     return (
         lambda pattern: mean(case, sites, vector, pattern, k),
         lambda pattern: mean(case, sites, vector, pattern, k - 1),
@@ -473,7 +481,7 @@ def e_and_b(case, sites, vector, k):
 
 
 @pytest.mark.parametrize("sites", range(3, 8))
-def test_2_118_2_119_equations_of_motion_with_plus_signs(case, sites):
+def test_2_118_2_119_equations_of_motion_with_plus_signs(case: Case, sites: int) -> None:
     h, c = case.h, case.ratio
     vector = random_distribution(sites)
     flow = full_flow(case, sites, vector)
@@ -482,7 +490,9 @@ def test_2_118_2_119_equations_of_motion_with_plus_signs(case, sites):
     for k in range(2, sites):
         e, b = e_and_b(case, sites, vector, k)
 
-        def a_rate(sign, e=e, b=b):
+        def a_rate(
+            sign: int, e: Callable[[str], float] = e, b: Callable[[str], float] = b
+        ) -> float:
             return (
                 -(h1 + c * r1 + c * r2) * b("0A")
                 + h3 * b("A0")
@@ -526,7 +536,7 @@ def test_2_118_2_119_equations_of_motion_with_plus_signs(case, sites):
         assert mean(case, sites, flow, "B", k) == pytest.approx(b_rate, abs=case.bound)
 
 
-def species_currents(case, e):
+def species_currents(case: Case, e: Callable[[str], float]) -> tuple[float, float, float]:
     """(2.123), (2.124), (2.125)."""
     h, c = case.h, case.ratio
     a = (
@@ -558,7 +568,7 @@ def species_currents(case, e):
     return a, b, total
 
 
-def source(case, e, b, sign):
+def source(case: Case, e: Callable[[str], float], b: Callable[[str], float], sign: int) -> float:
     """(2.122); `sign` = 1 with -(c r1 + c r2/2) in the first term, -1 for the print."""
     c = case.ratio
     r1, r2, r3, r4, r5, r6, r7, r8, r9 = (case.h[f"r{i}"] for i in range(1, 10))
@@ -584,7 +594,7 @@ def source(case, e, b, sign):
 
 
 @pytest.mark.parametrize("sites", range(3, 8))
-def test_2_120_to_2_125_currents_and_source(case, sites):
+def test_2_120_to_2_125_currents_and_source(case: Case, sites: int) -> None:
     vector = random_distribution(sites)
     flow = full_flow(case, sites, vector)
     engine = generator.species_currents(case.gas, sites, vector)
@@ -604,7 +614,7 @@ def test_2_120_to_2_125_currents_and_source(case, sites):
 
 
 @pytest.mark.parametrize("sites", SIZES)
-def test_2_126_2_127_stationary_current(case, sites):
+def test_2_126_2_127_stationary_current(case: Case, sites: int) -> None:
     h, c = case.h, case.ratio
     measure = product([case.weights1] * sites)
     rho = case.gas.density(case.z1)
@@ -621,8 +631,8 @@ def test_2_126_2_127_stationary_current(case, sites):
     assert case.gas.current(case.z1) == pytest.approx(printed, abs=case.bound)
 
 
-def test_2_128_current_on_the_shock_manifold():
-    p, q = WALKER.p_q
+def test_2_128_current_on_the_shock_manifold() -> None:
+    p, q = P_Q
     for z in (WALKER.z1, WALKER.z2, 2.7):
         rho = WALKER.gas.density(z)
         assert WALKER.gas.current(z) == pytest.approx((p - q) * rho * (1 - rho), abs=WALKER.bound)

@@ -1,8 +1,9 @@
 import json
+from pathlib import Path
 
 import numpy as np
 import pytest
-from typer.testing import CliRunner
+from typer.testing import CliRunner, Result
 
 from narrows.cli import app
 from tests.analysis.run_writer import write_channel
@@ -11,7 +12,7 @@ FRAMES = 101
 
 
 @pytest.fixture
-def run(tmp_path):
+def run(tmp_path: Path) -> Path:
     times = np.arange(FRAMES)[:, None, None]
     positions = np.array([[5.0, 5.0]]) + times * [0.03, 0.0]
     velocities = 0.1 * np.random.default_rng(0).normal(size=(FRAMES, 1, 2))
@@ -19,11 +20,11 @@ def run(tmp_path):
     return tmp_path / "run"
 
 
-def narrows(*words):
+def narrows(*words: str | Path) -> Result:
     return CliRunner().invoke(app, ["analyze", *map(str, words)], env={"COLUMNS": "200"})
 
 
-def test_table_and_files(run):
+def test_table_and_files(run: Path) -> None:
     done = narrows(run)
     assert done.exit_code == 0
     assert "channel, engine srd, not finished" in done.stdout
@@ -34,29 +35,29 @@ def test_table_and_files(run):
     assert json.loads((run / "summary.json").read_text())["scene"] == "channel"
 
 
-def test_bad_directory_is_one_line_on_stderr(tmp_path):
+def test_bad_directory_is_one_line_on_stderr(tmp_path: Path) -> None:
     done = narrows(tmp_path / "nowhere")
     assert done.exit_code == 2
     assert done.stdout == ""
-    assert done.stderr == f"narrows analyze: {tmp_path / 'nowhere'}: no such directory\n"
+    assert done.stderr == f"narrows: {tmp_path / 'nowhere'}: no such directory\n"
 
 
-def test_results_that_cannot_be_written(run):
+def test_results_that_cannot_be_written(run: Path) -> None:
     (run / "summary.json").mkdir()
     done = narrows(run)
-    assert done.exit_code == 2
-    assert done.stderr.startswith("narrows analyze: ")
+    assert done.exit_code == 1
+    assert done.stderr.startswith("narrows: ")
     assert done.stderr.count("\n") == 1
     assert "summary.json" in done.stderr
 
 
-def test_missing_argument():
+def test_missing_argument() -> None:
     done = narrows()
     assert done.exit_code == 2
     assert "Missing argument 'DIR'" in done.stderr
 
 
-def test_run_that_has_only_begun(run):
+def test_run_that_has_only_begun(run: Path) -> None:
     (run / "observables.dat").write_text("# Time-averaged data\n# TimeStep v_fluid_temperature\n")
     done = narrows(run)
     assert done.exit_code == 2

@@ -12,7 +12,7 @@ import numpy as np
 import pytest
 
 from tests.conftest import COMMANDS, ROOT, Run
-from tests.lammps_inputs.test_decks import frames
+from tests.dumps import frames
 
 SHORT = ["--set", "duration=1.2", "--set", "equilibration=0", "--set", "sampling_interval=0.15"]
 THIN = ["--set", "density=0.5", "--set", "duration=10"]
@@ -48,7 +48,7 @@ def test_settings_win_over_the_file(tmp_path: Path, command: Run) -> None:
 @pytest.mark.parametrize(
     ("arguments", "message"),
     [
-        (["chanel"], "scene = 'chanel': must be one of channel, poiseuille, bulk"),
+        (["chanel"], "scene = 'chanel': must be one of bulk, channel, poiseuille"),
         (["channel", "--set", "length=40.5"], "length = 40.5: a periodic length must be"),
         (["channel", "--set", "length"], "'length': must have the form field=value"),
         (["channel", "--scene", "none.toml"], "none.toml: "),

@@ -2,6 +2,7 @@
 
 import json
 import os
+import shlex
 import signal
 import subprocess
 import sys
@@ -14,7 +15,7 @@ import pytest
 from lammps_inputs import make_scene
 from srd_driver import Simulation
 from tests.conftest import ROOT, Run
-from tests.lammps_inputs.test_decks import frames
+from tests.dumps import frames
 
 TINY = ["--set", "length=20", "--set", "colloids=1", "--set", "equilibration=0"]
 SHORT = [*TINY, "--set", "duration=1.2", "--set", "sampling_interval=0.15"]
@@ -83,6 +84,20 @@ def test_the_commands_make_the_same_runs(tmp_path: Path, command: Run) -> None:
             assert (folder / file).read_bytes() == (tmp_path / solvent / file).read_bytes()
     nothing = command("narrows", *words, "--commands", "-", cwd=tmp_path)
     assert nothing.stdout == ""
+
+
+def test_a_command_names_every_field_that_is_not_the_default(tmp_path: Path, command: Run) -> None:
+    fields = ["gravity=1e-05", "spacing=6.5", "duration=1000.0", "hydrodynamics=shuffle"]
+    settings = [word for field in fields for word in ("--set", field)]
+    out = tmp_path / "a b"
+    done = command("narrows", "sweep", "channel", "--out", out, *settings, "--commands", "-")
+    (line,) = done.stdout.splitlines()
+    words = shlex.split(line)[3:]
+    given = [words[n + 1] for n, word in enumerate(words) if word == "--set"]
+    assert "duration=1000.0" in given  # always: the run directory may hold a shorter run
+    assert sorted(given) == sorted(fields)
+    assert words[:3] == ["run", "channel", "--engine"]
+    assert words[-3:] == ["--out", str(out / "seed=1"), "--resume"]
 
 
 @pytest.mark.parametrize(

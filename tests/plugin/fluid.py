@@ -13,6 +13,7 @@ from lammps_inputs.engines.engine import Start
 from tests.conftest import Run
 
 Array = NDArray[np.float64]
+AXES = "xyz"
 
 
 @dataclass(frozen=True)
@@ -41,17 +42,13 @@ class HasState(Protocol):
 def largest_difference(one: HasState, other: HasState, scene: Scene) -> float:
     """Of all coordinates and velocities, images taken as the same place."""
     differences = []
+    box = scene.system.box
     for kind in ("fluid", "colloid"):
         mine, theirs = (getattr(state, f"{kind}_positions") for state in (one, other))
         assert len(mine) == len(theirs)
         if not len(mine):
             continue
-        apart = mine - theirs
-        for axis, (size, periodic) in enumerate(
-            zip(scene.system.box.sizes, scene.system.box.periodic, strict=True)
-        ):
-            if periodic:
-                apart[:, axis] -= size * np.round(apart[:, axis] / size)
+        apart = box.nearest_image(mine - theirs)
         mine, theirs = (getattr(state, f"{kind}_velocities") for state in (one, other))
         differences += [abs(apart).max(), abs(mine - theirs).max()]
     return float(np.max(differences))  # NaN if there is one
@@ -83,8 +80,11 @@ def run_mpc(
         (folder / "in.lammps").write_text(script(scene, "mpc", start))
     with (folder / "in.lammps").open("a") as deck:
         deck.write("fix_modify solvent save end.fluid\n")
+        columns = " ".join(("id", *AXES[: scene.system.box.dimensions]))
+        velocities = " ".join(f"v{axis}" for axis in AXES[: scene.system.box.dimensions])
         deck.write(
-            "write_dump all custom end.dump id x y vx vy modify sort id format float %.17g\n"
+            f"write_dump all custom end.dump {columns} {velocities} "
+            "modify sort id format float %.17g\n"
         )
         deck.write(end)
     launcher = ["mpirun", "-np", str(ranks)] if ranks > 1 else []
@@ -96,5 +96,7 @@ def run_mpc(
 def read_state(folder: Path) -> State:
     """What `run_mpc` left."""
     rows = [line.split() for line in (folder / "end.dump").read_text().splitlines()[9:]]
-    colloids = np.array(rows, dtype=float).reshape(-1, 5)
-    return State(*read_fluid(folder / "end.fluid"), colloids[:, 1:3], colloids[:, 3:5])
+    positions, velocities = read_fluid(folder / "end.fluid")
+    dimensions = positions.shape[1]
+    colloids = np.array(rows, dtype=float).reshape(-1, 1 + 2 * dimensions)[:, 1:]
+    return State(positions, velocities, colloids[:, :dimensions], colloids[:, dimensions:])

@@ -10,9 +10,10 @@ from typing import Any
 
 import pytest
 
-from lammps_inputs import make_scene
+from lammps_inputs import Scene, make_scene
 from srd_driver.reference import ReferenceEngine
 from tests.conftest import Run
+from tests.hand_made import Mixture3D, Slit3D
 from tests.plugin.fluid import largest_difference, run_mpc
 
 COLLISIONS = 30
@@ -20,7 +21,7 @@ TOLERANCE = 1e-9  # rounding grows by about 1e3 in 30 collisions with colloids: 
 
 BULK3D = {"dimension": 3, "length": 6, "width": 8, "height": 7}
 DRIVEN = {"length": 12, "width": 9.5, "gravity": 0.02}
-CASES: dict[str, tuple[str, dict[str, Any]]] = {
+NAMED: dict[str, tuple[str, dict[str, Any]]] = {
     "bulk 2D": ("bulk", {"thermostat": "none", "length": 13, "width": 17, "angle": 130}),
     "bulk 3D, coordinate axes": ("bulk", {**BULK3D, "rotation": "coordinate_axes"}),
     "bulk 3D, random axis": ("bulk", {**BULK3D, "rotation": "random_axis", "angle": 60}),
@@ -35,6 +36,13 @@ CASES: dict[str, tuple[str, dict[str, Any]]] = {
     "slit, bath": ("poiseuille", {**DRIVEN, "hydrodynamics": "bath"}),
     "colloids": ("channel", {"colloids": 3, "length": 21, "gravity": 2.0}),
 }
+CASES: dict[str, Scene] = {
+    **{case: make_scene(name, **fields) for case, (name, fields) in NAMED.items()},
+    "slit 3D, layer": Slit3D.make(diagonal=True),
+    "slit 3D, random axis": Slit3D.make(rotation="random_axis", angle=120, thermostat="none"),
+    "slit 3D, shuffle": Slit3D.make(hydrodynamics="shuffle", thermostat="monte_carlo"),
+    "two species of colloids, slit 3D": Mixture3D.make(),
+}
 SERIAL = [(case, 1) for case in CASES]
 PARALLEL = [
     *(("colloids", ranks) for ranks in (2, 3, 4)),
@@ -42,13 +50,14 @@ PARALLEL = [
     ("slit, shuffle", 2),
     ("bulk 2D", 4),
     ("bulk 3D, random axis", 4),
+    ("slit 3D, layer", 2),
+    ("two species of colloids, slit 3D", 2),
 ]
 
 
 @functools.cache
 def reference_after_30(case: str) -> ReferenceEngine:
-    name, fields = CASES[case]
-    reference = ReferenceEngine(make_scene(name, **fields))
+    reference = ReferenceEngine(CASES[case])
     reference.advance(COLLISIONS)
     return reference
 
@@ -62,6 +71,6 @@ def test_every_particle_agrees_after_30_collisions(
     mpc = run_mpc(scene, COLLISIONS, tmp_path, command, ranks)
 
     assert largest_difference(mpc, reference, scene) < TOLERANCE
-    if scene.colloids:
+    if case == "colloids":
         moved = reference.colloid_velocities[:, 0].mean()
         assert moved > 0.4  # g t = 0.9 less friction: the forces were there

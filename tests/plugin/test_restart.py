@@ -42,8 +42,9 @@ def test_continues_on_other_processes(
     command: Run,
 ) -> None:
     of = SCENES[scene]
-    step = HALF * of.steps_per_collision
-    assert step % of.sample_steps
+    clock = of.system.clock
+    step = HALF * clock.steps_per_collision
+    assert step % clock.sample_steps
     if scene not in uninterrupted:
         uninterrupted[scene] = run_mpc(of, WHOLE, tmp_path / "whole", command)
     parts = tmp_path / "parts"

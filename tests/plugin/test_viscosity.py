@@ -15,7 +15,7 @@ import numpy as np
 import pytest
 
 from analysis.run_directory import RunDirectory
-from lammps_inputs import make_scene
+from lammps_inputs.scenes.poiseuille import Poiseuille
 from lammps_inputs.viscosity import viscosity
 from srd_driver import Simulation
 from tests.conftest import ROOT
@@ -33,7 +33,8 @@ def core_viscosity(tmp_path_factory: pytest.TempPathFactory) -> Path:
         pytest.skip("no C++ compiler")
     program = tmp_path_factory.mktemp("core") / "core_viscosity"
     options = "-std=c++17 -O3 -ffp-contract=off -fno-math-errno -fno-trapping-math -Wno-psabi"
-    source = [f"-I{ROOT / 'lammps_plugin' / 'core'}", Path(__file__).parent / "core_viscosity.cpp"]
+    folder = ROOT / "lammps_plugin" / "core"
+    source = [f"-I{folder}", str(Path(__file__).parent / "core_viscosity.cpp")]
     subprocess.run([compiler, *options.split(), *source, "-o", program], check=True)
     return program
 
@@ -44,9 +45,10 @@ def measured(program: Path, point: Point, duration: float) -> tuple[float, float
     theory = viscosity(
         scene.density, scene.collision_time, scene.angle, scene.dimension, scene.rotation
     )
-    words = [SEED, scene.dimension, scene.rotation.partition("_")[0], scene.density, scene.angle]
+    axis = scene.rotation.partition("_")[0]
+    words: list[object] = [SEED, scene.dimension, axis, scene.density, scene.angle]
     words += [scene.collision_time, scene.length, scene.width, scene.shear_wave, theory, duration]
-    done = subprocess.run([program, *map(str, words)], capture_output=True, check=True)
+    done = subprocess.run([str(program), *map(str, words)], capture_output=True, check=True)
     value, error = map(float, done.stdout.split())
     return value / theory, error / theory
 
@@ -82,10 +84,10 @@ def test_wall_slip(
     tmp_path: Path, fields: dict[str, float], known: float, known_error: float
 ) -> None:
     """The slip that the published rule (3.14) leaves, as the reference measures it."""
-    scene = make_scene("poiseuille", seed=SEED, **fields)
+    scene = Poiseuille.make(seed=SEED, **fields)
     with Simulation(scene, "mpc", tmp_path / "run") as simulation:
         simulation.finish()
-    fluid = RunDirectory(tmp_path / "run").fluid_profile
+    fluid = RunDirectory(tmp_path / "run").profile()
     after = fluid.steps * scene.system.clock.time_step > scene.equilibration
     momentum, counts = (fluid.counts * fluid.velocity_x)[after], fluid.counts[after]
     blocks = zip(np.array_split(momentum, 20), np.array_split(counts, 20), strict=True)

@@ -6,8 +6,9 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from numpy.typing import NDArray
 
-from lammps_inputs import Bulk, InitialState
-from lammps_inputs.scene import Rotation
+from lammps_inputs import InitialState
+from lammps_inputs.scenes.bulk import Bulk
+from lammps_inputs.system import Rotation
 from srd_driver.reference import ReferenceEngine
 from srd_driver.reference.collision import (
     Cells,
@@ -19,6 +20,7 @@ from srd_driver.reference.collision import (
     signs,
 )
 from srd_driver.reference.counter_random import CounterRandom, Stream
+from tests.parts import solvent_of
 
 Array = NDArray[np.float64]
 
@@ -119,7 +121,7 @@ def states(draw: st.DrawFn) -> tuple[Bulk, InitialState]:
         seed=draw(st.integers(1, 2**31 - 1)),
     )
     random = np.random.default_rng(draw(st.integers(0, 2**32)))
-    particles = scene.system.solvent.particles
+    particles = solvent_of(scene).particles
     spread = draw(st.sampled_from([1.0, 0.02]))
     none = np.empty((0, dimension))
     return scene, InitialState(
@@ -148,11 +150,10 @@ def test_momentum_and_energy_are_conserved(case: tuple[Bulk, InitialState]) -> N
 @settings(deadline=None)
 def test_collision_conserves_every_cell(case: tuple[Bulk, InitialState]) -> None:
     scene, state = case
-    shape = grid_shape(scene.system.box.sizes, scene.system.box.periodic)
+    box = scene.system.box
+    shape = grid_shape(box.sizes, box.periodic)
     velocities = state.fluid_velocities.T.copy()
-    cells = Cells.sort(
-        state.fluid_positions.T, np.full(len(shape), 0.3), shape, scene.system.box.periodic
-    )
+    cells = Cells.sort(state.fluid_positions.T, np.full(len(shape), 0.3), shape, box.periodic)
     before, energy = cells.sum(velocities), cells.sum((velocities**2).sum(axis=0))
     random = CounterRandom(scene.seed, 0)
     collide(velocities, cells, cells.mean_velocity(velocities), scene.angle, scene.rotation, random)

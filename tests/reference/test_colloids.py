@@ -1,15 +1,23 @@
 """Colloids: forces against the plain double loop, momentum, energy against the time step."""
 
+from collections import Counter
+from collections.abc import Iterator
+from itertools import combinations
+
 import numpy as np
 import pytest
-from blocking import mean_and_error
 from numpy.typing import NDArray
 from scipy.stats import kstest
 
-from lammps_inputs import Channel, initial_state
+from lammps_inputs import Scene, initial_state
+from lammps_inputs.scenes.channel import Channel
+from lammps_inputs.system import FLUID, Interaction, PairPotential, System
 from srd_driver.reference import ReferenceEngine, SimulationFault
 from srd_driver.reference.colloids import ColloidForces
 from srd_driver.reference.streaming import stream
+from tests.hand_made import Mixture3D
+from tests.parts import solvent_of
+from tests.reference.blocking import mean_and_error
 
 Array = NDArray[np.float64]
 
@@ -29,24 +37,56 @@ CROWDED = Channel.make(
 )
 
 
-def double_loop(scene: Channel, fluid: Array, colloids: Array) -> tuple[Array, Array]:
-    """All forces (3.50) from every pair, positions (N, 2); gravity left out."""
+MIXTURE = Mixture3D.make(thermostat="none")
 
-    def separation(a: Array, b: Array) -> Array:
-        difference = a[:, None] - b[None]
-        difference[..., 0] -= scene.length * np.round(difference[..., 0] / scene.length)
-        return difference
 
-    s = separation(fluid, colloids)
-    r = np.linalg.norm(s, axis=2)
-    pairs = s * (scene.colloid_fluid.force(r) / r)[..., None]
-    on_fluid, on_colloids = pairs.sum(axis=1), -pairs.sum(axis=0)
-    s = separation(colloids, colloids)
-    r = np.linalg.norm(s, axis=2) + 1e9 * np.eye(len(colloids))
-    on_colloids += (s * (scene.colloid_colloid.force(r) / r)[..., None]).sum(axis=1)
-    y = colloids[:, 1]
-    on_colloids[:, 1] += scene.colloid_wall.force(y) - scene.colloid_wall.force(scene.width - y)
-    return on_fluid, on_colloids
+def double_loop(system: System, fluid: Array, colloids: Array) -> tuple[Array, Array]:
+    """All forces (3.50) from every pair, positions (N, d); drives left out."""
+    sizes, periodic = np.array(system.box.sizes), np.array(system.box.periodic)
+    species = np.repeat([each.name for each in system.species], [s.count for s in system.species])
+
+    def force(potential: PairPotential, separation: Array) -> Array:
+        nearest = separation - np.where(periodic, sizes * np.round(separation / sizes), 0.0)
+        r = np.linalg.norm(nearest, axis=-1)
+        return np.asarray(nearest * (potential.force(r) / r)[..., None])
+
+    on_fluid, on_colloids = np.zeros_like(fluid), np.zeros_like(colloids)
+    for i, kind in enumerate(species):
+        for interaction in system.interactions:
+            pair, potential = (interaction.first, interaction.second), interaction.potential
+            if pair == (kind, FLUID):
+                pushed = force(potential, fluid - colloids[i])
+                on_fluid += pushed
+                on_colloids[i] -= pushed.sum(axis=0)
+            for j, other in enumerate(species):
+                if i != j and pair in ((kind, other), (other, kind)):
+                    on_colloids[i] += force(potential, colloids[i] - colloids[j])
+    return on_fluid, on_colloids + of_walls(system, colloids)
+
+
+def of_walls(system: System, colloids: Array) -> Array:
+    """Forces of the walls on the colloids (N, d)."""
+    species = np.repeat([each.name for each in system.species], [s.count for s in system.species])
+    forces = np.zeros_like(colloids)
+    for wall in system.walls:
+        for name, potential in wall.potentials:
+            for i in np.flatnonzero(species == name):
+                distance, inwards = colloids[i, wall.axis], 1
+                if wall.side == "upper":
+                    distance, inwards = system.box.sizes[wall.axis] - distance, -1
+                forces[i, wall.axis] += inwards * potential.force(distance)
+    return forces
+
+
+def felt(system: System, colloids: Array) -> Iterator[Interaction]:
+    """The interactions of pairs that are in reach of each other."""
+    species = np.repeat([each.name for each in system.species], [s.count for s in system.species])
+    for i, j in combinations(range(len(colloids)), 2):
+        r = np.linalg.norm(system.box.nearest_image(colloids[i] - colloids[j]))
+        for interaction in system.particle_interactions():
+            pair = {interaction.first, interaction.second}
+            if pair == {species[i], species[j]} and r < interaction.potential.cutoff:
+                yield interaction
 
 
 def find_pairs(forces: ColloidForces, engine: ReferenceEngine) -> None:
@@ -58,66 +98,82 @@ def find_pairs(forces: ColloidForces, engine: ReferenceEngine) -> None:
     )
 
 
-def test_forces_equal_the_double_loop_and_add_up_to_the_walls() -> None:
-    engine = ReferenceEngine(CROWDED)
-    forces = ColloidForces(CROWDED)
-    met = 0
-    for _ in range(150):
+@pytest.mark.parametrize("scene", [CROWDED, MIXTURE], ids=["2D", "3D"])
+def test_forces_equal_the_double_loop_and_add_up_to_the_walls(scene: Scene) -> None:
+    system, random = scene.system, np.random.default_rng(1)
+    engine = ReferenceEngine(scene)
+    forces = ColloidForces(system, solvent_of(scene))
+    met = Counter[Interaction]()
+    for collision in range(150):
+        if scene is MIXTURE and collision % 10 == 0:  # stirred, so that all kinds meet
+            engine.colloid_velocities[:] = 2 * random.normal(size=(system.particles, 3))
         engine.advance(1)
         find_pairs(forces, engine)
         fluid, colloids = engine.fluid_positions, engine.colloid_positions
         on_fluid, on_colloids = forces.forces(fluid.T, colloids.T)
-        plain_fluid, plain_colloids = double_loop(CROWDED, fluid, colloids)
+        plain_fluid, plain_colloids = double_loop(system, fluid, colloids)
         size = abs(plain_colloids).max() + abs(plain_fluid).max()
         np.testing.assert_allclose(on_fluid.T, plain_fluid, atol=1e-12 * size)
         np.testing.assert_allclose(on_colloids.T, plain_colloids, atol=1e-12 * size)
-        wall = CROWDED.colloid_wall
-        y = colloids[:, 1]
-        walls = (wall.force(y) - wall.force(CROWDED.width - y)).sum()
         total = on_fluid.sum(axis=1) + on_colloids.sum(axis=1)
-        np.testing.assert_allclose(total, [0, walls], atol=1e-12 * size)
-        met += bool(forces._colloid_pairs.first.size)
-    assert met > 10  # colloids did come near each other
+        walls = of_walls(system, colloids).sum(axis=0)
+        np.testing.assert_allclose(total, walls, atol=1e-12 * size)
+        met.update(felt(system, colloids))
+    assert set(met) == set(system.particle_interactions())  # each kind did meet the other
+    assert met.total() > 10
 
 
-def integrate_everything(scene: Channel, engine: ReferenceEngine) -> tuple[Array, ...]:
+def drives_on(system: System, target: str) -> Array:
+    """Sum of the accelerations (d,)."""
+    drives = [drive.acceleration for drive in system.drives if drive.target == target]
+    return np.asarray(np.sum([np.zeros(3), *drives], axis=0)[: system.box.dimensions])
+
+
+def integrate_everything(engine: ReferenceEngine) -> tuple[Array, ...]:
     """tau_c of velocity Verlet with the double loop at each step: positions and velocities."""
+    system = engine.scene.system
+    clock, masses = system.clock, system.masses[:, None]
+    pulls = [np.tile(drives_on(system, each.name), (each.count, 1)) for each in system.species]
+    wind, pull = drives_on(system, FLUID), np.concatenate(pulls)
+
+    def accelerations() -> tuple[Array, Array]:
+        on_fluid, on_colloids = double_loop(system, fluid, colloids)
+        return on_fluid + wind, on_colloids / masses + pull
+
     fluid, fluid_v = engine.fluid_positions.copy(), engine.fluid_velocities.copy()
     colloids, colloids_v = engine.colloid_positions.copy(), engine.colloid_velocities.copy()
-    time, gravity = scene.system.clock.time_step, np.array([scene.gravity, 0])
-    on_fluid, on_colloids = double_loop(scene, fluid, colloids)
-    for _ in range(scene.md_steps_per_collision):
+    time = clock.time_step
+    of_fluid, of_colloids = accelerations()
+    for _ in range(clock.steps_per_collision):
         r, v = fluid.T.copy(), fluid_v.T.copy()
-        stream(r, v, on_fluid.T, time, scene.width)
-        fluid, fluid_v = r.T, v.T - 0.5 * time * on_fluid
-        colloids_v = colloids_v + 0.5 * time * (on_colloids / scene.colloid_mass + gravity)
+        stream(r, v, of_fluid.T, time, system.box.sizes[1])
+        fluid, fluid_v = r.T, v.T - 0.5 * time * of_fluid
+        colloids_v = colloids_v + 0.5 * time * of_colloids
         colloids = colloids + time * colloids_v
-        on_fluid, on_colloids = double_loop(scene, fluid, colloids)
-        fluid_v = fluid_v + 0.5 * time * on_fluid
-        colloids_v = colloids_v + 0.5 * time * (on_colloids / scene.colloid_mass + gravity)
+        of_fluid, of_colloids = accelerations()
+        fluid_v = fluid_v + 0.5 * time * of_fluid
+        colloids_v = colloids_v + 0.5 * time * of_colloids
     return fluid, fluid_v, colloids, colloids_v
 
 
 @pytest.mark.parametrize("boost", [0.0, 8.0])
+@pytest.mark.parametrize("scene", [CROWDED, MIXTURE], ids=["2D", "3D"])
 def test_a_collision_interval_misses_no_force(
-    boost: float, monkeypatch: pytest.MonkeyPatch
+    scene: Scene, boost: float, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     # boost: a colloid far faster than the pairs allow, so that they must be found anew in time
     monkeypatch.setattr(ReferenceEngine, "_collide", lambda self: None)
-    engine = ReferenceEngine(CROWDED)
+    engine, box = ReferenceEngine(scene), scene.system.box
     engine.advance(40)
-    engine.colloid_velocities[0] += [0, boost]
+    engine.colloid_velocities[0, 1] += boost
     for _ in range(3):
-        expected = integrate_everything(CROWDED, engine)
+        expected = integrate_everything(engine)
         engine.advance(1)
-        length = CROWDED.length
         for positions, plain in (
             (engine.fluid_positions, expected[0]),
             (engine.colloid_positions, expected[2]),
         ):
-            difference = positions - plain
-            difference[:, 0] -= length * np.round(difference[:, 0] / length)
-            np.testing.assert_allclose(difference, 0, atol=1e-10)
+            np.testing.assert_allclose(box.nearest_image(positions - plain), 0, atol=1e-10)
         np.testing.assert_allclose(engine.fluid_velocities, expected[1], atol=1e-9)
         np.testing.assert_allclose(engine.colloid_velocities, expected[3], atol=1e-9)
 
@@ -129,8 +185,10 @@ def test_colloid_falls_freely_without_fluid_and_walls() -> None:
     state.fluid_velocities[:] = 0
     state.colloid_velocities[:] = [0.2, 0]
     engine = ReferenceEngine(scene, state)
+    assert engine._coupling is not None
     engine._molecular_dynamics(engine._coupling)
-    x = scene.initial_colloid_positions[:, 0] + 0.2 * 0.5 + 0.3 * 0.5**2 / 2
+    start = initial_state(scene.system, scene.seed).colloid_positions[:, 0]
+    x = start + 0.2 * 0.5 + 0.3 * 0.5**2 / 2
     np.testing.assert_allclose(engine.colloid_positions[:, 0], x, rtol=1e-14)
     np.testing.assert_allclose(engine.colloid_velocities[:, 0], 0.2 + 0.3 * 0.5, rtol=1e-14)
 
@@ -144,8 +202,9 @@ def test_images_count_the_turns() -> None:
     engine.advance(5)
     x = engine.colloid_positions[:, 0]
     assert ((x >= 0) & (x < scene.length)).all()
-    assert engine.colloid_images.tolist() == [-1, 0, 0]
-    np.testing.assert_allclose(x + scene.length * engine.colloid_images - start, -15, atol=0.5)
+    assert engine.colloid_images.tolist() == [[-1, 0], [0, 0], [0, 0]]
+    unwrapped = x + scene.length * engine.colloid_images[:, 0]
+    np.testing.assert_allclose(unwrapped - start, -15, atol=0.5)
 
 
 def test_energy_error_has_the_slope_of_velocity_verlet(monkeypatch: pytest.MonkeyPatch) -> None:

@@ -6,9 +6,13 @@ from typing import Any
 import numpy as np
 import pytest
 
-from lammps_inputs import Bulk, InitialState, Scene, make_scene
+from lammps_inputs import InitialState, Scene, make_scene
+from lammps_inputs.scenes.bulk import Bulk
+from lammps_inputs.scenes.channel import Channel
 from srd_driver.reference import ReferenceEngine
 from srd_driver.reference.counter_random import CounterRandom, Stream
+from tests.hand_made import Mixture3D, Slit3D
+from tests.parts import solvent_of
 
 CASES: list[tuple[str, dict[str, Any]]] = [
     ("bulk", {"length": 6, "width": 5, "shear_wave": 0.5}),
@@ -23,13 +27,15 @@ CASES: list[tuple[str, dict[str, Any]]] = [
     ("channel", {"length": 12, "colloids": 2}),
     ("channel", {"length": 12, "colloids": 1, "hydrodynamics": "shuffle"}),
 ]
+SCENES = [
+    *(make_scene(name, **fields) for name, fields in CASES),
+    Slit3D.make(thermostat="monte_carlo", diagonal=True),
+    Mixture3D.make(),
+]
 
 
-@pytest.mark.parametrize(("name", "fields"), CASES)
-def test_continuation_is_bitwise_identical(
-    name: str, fields: dict[str, Any], tmp_path: Path
-) -> None:
-    scene = make_scene(name, **fields)
+@pytest.mark.parametrize("scene", SCENES, ids=str)
+def test_continuation_is_bitwise_identical(scene: Scene, tmp_path: Path) -> None:
     whole = ReferenceEngine(scene)
     whole.advance(12)
     part = ReferenceEngine(scene)
@@ -38,7 +44,7 @@ def test_continuation_is_bitwise_identical(
     rest = ReferenceEngine.load(scene, tmp_path / "state")
     rest.advance(7)
     assert rest.collisions == 12
-    assert rest.time == whole.time == pytest.approx(12 * scene.collision_time)
+    assert rest.time == whole.time == pytest.approx(12 * solvent_of(scene).collision_time)
     for array in (
         "fluid_positions",
         "fluid_velocities",
@@ -49,19 +55,18 @@ def test_continuation_is_bitwise_identical(
         np.testing.assert_array_equal(getattr(rest, array), getattr(whole, array))
 
 
-@pytest.mark.parametrize(("name", "fields"), CASES)
-def test_everything_stays_in_the_box(name: str, fields: dict[str, Any]) -> None:
-    scene = make_scene(name, **fields)
+@pytest.mark.parametrize("scene", SCENES, ids=str)
+def test_everything_stays_in_the_box(scene: Scene) -> None:
     engine = ReferenceEngine(scene)
     engine.advance(25)
-    box = np.array(scene.system.box.sizes)
-    assert engine.fluid_positions.shape == (
-        scene.system.solvent.particles,
-        scene.system.box.dimensions,
-    )
+    box = scene.system.box
+    assert engine.fluid_positions.shape == (solvent_of(scene).particles, box.dimensions)
     assert (engine.fluid_positions >= 0).all()
-    assert (engine.fluid_positions <= box).all()
-    assert (engine.fluid_positions < box)[:, scene.system.box.periodic].all()
+    assert (engine.fluid_positions <= box.sizes).all()
+    assert (engine.fluid_positions < box.sizes)[:, box.periodic].all()
+    if scene.system.species:
+        assert (engine.colloid_positions >= 0).all()
+        assert (engine.colloid_positions < box.sizes).all()
 
 
 def test_one_collision_by_hand() -> None:
@@ -101,17 +106,14 @@ def test_a_scene_is_a_function_of_its_seed() -> None:
 
 
 def test_mean_velocity_weighs_colloids_with_their_mass() -> None:
-    scene = make_scene("channel", length=12, colloids=1)
+    scene = Channel.make(length=12, colloids=1)
     engine = ReferenceEngine(scene)
     engine.fluid_velocities[:] = [1.0, 0.0]
     engine.colloid_velocities[:] = [0.0, 2.0]
-    mass = scene.colloid_mass
-    total = scene.system.solvent.particles + mass
-    np.testing.assert_allclose(
-        engine.mean_velocity(),
-        [scene.system.solvent.particles / total, 2 * mass / total],
-        rtol=1e-13,
-    )
+    mass, particles = scene.colloid_mass, solvent_of(scene).particles
+    total = particles + mass
+    expected = np.array([particles / total, 2 * mass / total])
+    np.testing.assert_allclose(engine.mean_velocity(), expected, rtol=1e-13)
 
 
 @pytest.mark.parametrize("dimension", [2, 3])

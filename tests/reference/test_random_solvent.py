@@ -8,8 +8,8 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from scipy.stats import chi2, kstest
 
-from lammps_inputs import Bulk
-from lammps_inputs.scene import Hydrodynamics
+from lammps_inputs.scenes.bulk import Bulk
+from lammps_inputs.system import Hydrodynamics
 from srd_driver.reference import ReferenceEngine, random_solvent
 from srd_driver.reference.counter_random import CounterRandom, Stream
 

@@ -5,14 +5,20 @@ python -m pytest -m statistics -s tests/reference/test_settling_speed.py
 
 import numpy as np
 import pytest
-from blocking import mean_and_error
 from numpy.typing import NDArray
 
-from lammps_inputs import Channel
+from lammps_inputs.scenes.channel import Channel
 from srd_driver.reference import ReferenceEngine
+from tests.reference.blocking import mean_and_error
 
 EQUILIBRATION = 100.0
 DURATION = 3000.0
+
+
+def unwrapped(engine: ReferenceEngine) -> float:
+    """Mean x of the colloids [a0]."""
+    length = engine.scene.system.box.sizes[0]
+    return float(np.mean(engine.colloid_positions[:, 0] + length * engine.colloid_images[:, 0]))
 
 
 def velocities_per_time_unit(gravity: float, seed: int, md_steps: int) -> NDArray[np.float64]:
@@ -25,14 +31,14 @@ def velocities_per_time_unit(gravity: float, seed: int, md_steps: int) -> NDArra
     collisions = round(1 / scene.collision_time)
     time = collisions * scene.collision_time
     engine.advance(round(EQUILIBRATION / scene.collision_time))
-    position = np.mean(engine.colloid_positions[:, 0] + scene.length * engine.colloid_images)
+    position = unwrapped(engine)
     series = []
     for _ in range(round(DURATION / time)):
         drift = 0.0
         for _ in range(collisions):
             engine.advance(1)
             drift += engine.mean_velocity()[0] * scene.collision_time
-        moved_to = np.mean(engine.colloid_positions[:, 0] + scene.length * engine.colloid_images)
+        moved_to = unwrapped(engine)
         series.append((moved_to - position - drift) / time)
         position = moved_to
     return np.array(series)

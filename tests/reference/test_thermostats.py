@@ -5,8 +5,8 @@ import pytest
 from numpy.typing import NDArray
 from scipy.stats import chi2, kstest
 
-from lammps_inputs import Bulk
-from lammps_inputs.scene import Thermostat
+from lammps_inputs.scenes.bulk import Bulk
+from lammps_inputs.system import Thermostat
 from srd_driver.reference import ReferenceEngine, thermostats
 from srd_driver.reference.collision import Cells
 from srd_driver.reference.counter_random import CounterRandom, Stream

@@ -14,20 +14,23 @@ from itertools import product
 import numpy as np
 import pytest
 
-from lammps_inputs import Bulk
-from lammps_inputs.scene import Rotation
+from lammps_inputs.scenes.bulk import Bulk
+from lammps_inputs.system import Rotation
 from lammps_inputs.viscosity import viscosity
 from srd_driver.reference import ReferenceEngine
+from tests.parts import solvent_of
 
 SEED = 1
 ERROR = 0.0045  # relative standard error that a run is made long enough for
 KICK_INTERVAL = 5  # collisions; longer than the memory of the stress
 
 Point = tuple[int, Rotation, float, float, float]  # dimension, rotation, n_f, alpha, tau_c
+AXES: tuple[Rotation, ...] = ("coordinate_axes",)
+RANDOM: tuple[Rotation, ...] = ("random_axis",)
 GRID: list[Point] = [
-    *product((2,), ("coordinate_axes",), (3, 10), (60, 90, 130), (0.05, 0.2, 0.5)),
-    *product((3,), ("coordinate_axes",), (3, 10), (90,), (0.05, 0.2, 0.5)),
-    *product((3,), ("random_axis",), (10,), (60, 130), (0.2, 0.5)),
+    *product((2,), AXES, (3, 10), (60, 90, 130), (0.05, 0.2, 0.5)),
+    *product((3,), AXES, (3, 10), (90,), (0.05, 0.2, 0.5)),
+    *product((3,), RANDOM, (10,), (60, 130), (0.2, 0.5)),
 ]
 
 
@@ -133,16 +136,14 @@ def measured_viscosity(engine: ReferenceEngine, chaos: bool = False) -> tuple[fl
         scene.density, scene.collision_time, scene.angle, scene.dimension, scene.rotation
     )
     kick = scene.shear_wave * math.expm1(theory * interval)
-    duration = max(
-        1500.0, 4 / (scene.system.solvent.particles * scene.shear_wave**2 * theory * ERROR**2)
-    )
+    particles, sizes = solvent_of(scene).particles, np.array(scene.system.box.sizes)
+    duration = max(1500.0, 4 / (particles * scene.shear_wave**2 * theory * ERROR**2))
 
     def advance() -> None:
         for _ in range(KICK_INTERVAL):
             if chaos:
-                engine.fluid_positions[:, across] = np.array(scene.system.box.sizes)[
-                    across
-                ] * random.random((scene.system.solvent.particles, len(across)))
+                places = random.random((particles, len(across)))
+                engine.fluid_positions[:, across] = sizes[across] * places
             engine.advance(1)
 
     for _ in range(4):

@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 from numpy.typing import NDArray
 
-from lammps_inputs import Poiseuille
+from lammps_inputs.scenes.poiseuille import Poiseuille
 from lammps_inputs.viscosity import viscosity
 from srd_driver.reference import ReferenceEngine
 from srd_driver.reference.collision import Cells

@@ -1,0 +1,15 @@
+"""Trajectories as LAMMPS writes them."""
+
+from pathlib import Path
+
+import numpy as np
+from numpy.typing import NDArray
+
+
+def frames(file: Path) -> dict[int, NDArray[np.float64]]:
+    """Rows of each frame of a dump, by step."""
+    read: dict[int, NDArray[np.float64]] = {}
+    for text in file.read_text().split("ITEM: TIMESTEP\n")[1:]:
+        step, _, rows = text.partition("\n")
+        read[int(step)] = np.loadtxt(rows.split("iz\n")[1].splitlines(), ndmin=2)
+    return read

@@ -1,0 +1,121 @@
+"""The machinery, on a paper of two small figures."""
+
+import csv
+import json
+import os
+import re
+import signal
+import subprocess
+import sys
+import time
+from collections.abc import Callable, Sequence
+from pathlib import Path
+from typing import Never
+
+import numpy as np
+import pytest
+
+from narrows.papers import session
+from narrows.papers.figure import Directories, PaperFigure, Quality
+from narrows.papers.session import Plan, carry_out
+from srd_driver.sweep import Advance, Failure, Run, run_all
+from tests.conftest import ROOT
+from tests.narrows.papers.tiny import paper
+
+
+def plan_of(out: Path, duration: float = 3.0) -> Plan:
+    whole = paper(duration)
+    return Plan(whole, whole.figures, "quick", out)
+
+
+def test_figures_data_results_and_page(tmp_path: Path) -> None:
+    plan = plan_of(tmp_path / "out")
+    assert [len(figure.scenes("quick")) for figure in plan.figures] == [2, 2]
+    assert len(plan.runs) == 3  # one is shared
+    done = carry_out(plan, jobs=2)
+    assert done.left_out == []
+    assert plan.finished() == 3
+    entries = json.loads((plan.out / "results.json").read_text())
+    assert [(entry["figure"], entry["paper"], entry["agrees"]) for entry in entries] == [
+        ("1", 10.0, True),
+        ("2", 10.0, True),
+    ]
+    rows = list(csv.reader((plan.out / "figure-1.csv").open()))
+    assert [row[0] for row in rows] == ["seed", "1", "2"]
+    assert float(rows[1][1]) == entries[0]["value"]
+    assert (plan.out / "figure-2.png").read_bytes().startswith(b"\x89PNG")
+    assert (plan.out / "figure-2.pdf").read_bytes().startswith(b"%PDF")
+    page = (plan.out / "index.html").read_text()
+    sources = re.findall(r'(?:src|href)="([^"]*)"', page)
+    assert len([s for s in sources if s.startswith("data:image/png;base64,")]) == 2
+    assert all(s.startswith(("data:", "#")) for s in sources)
+    assert not re.search(r"https?://|@import|url\(|<script", page)
+    assert "A &lt;tiny&gt; paper" in page
+    assert "2 agree" in page
+    assert "3 by the engine mpc" in page
+    assert "those of a &lt;tiny&gt; world" in page
+
+
+def test_finished_runs_are_skipped(tmp_path: Path) -> None:
+    plan = plan_of(tmp_path)
+    carry_out(plan, jobs=2)
+    before = {run.folder: (run.folder / "progress.json").stat().st_mtime_ns for run in plan.runs}
+    carry_out(plan_of(tmp_path), jobs=2)
+    after = {run.folder: (run.folder / "progress.json").stat().st_mtime_ns for run in plan.runs}
+    assert before == after
+
+
+def test_a_failed_run_costs_its_own_figures_only(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    plan = plan_of(tmp_path)
+    lost = next(run for run in plan.runs if run.scene.seed == 3)  # of the second figure
+
+    def one_fails(
+        runs: Sequence[Run], jobs: int, report: Callable[[Advance], None] | None = None
+    ) -> list[Failure]:
+        others = [run for run in runs if run is not lost]
+        return [*run_all(others, jobs, report), Failure(lost, "stopped")]
+
+    monkeypatch.setattr(session, "run_all", one_fails)
+    done = carry_out(plan, jobs=2)
+    assert [result.figure for result in done.results] == ["1"]
+    assert done.left_out == [f"figure 2 left out: {lost.folder}: stopped"]
+    assert "figure 2 left out" in (tmp_path / "index.html").read_text()
+    assert not (tmp_path / "figure-2.png").exists()
+
+
+def test_a_figure_that_cannot_be_made_costs_itself_only(tmp_path: Path) -> None:
+    def make(directories: Directories, quality: Quality) -> Never:
+        raise ValueError("every point needs a positive error")
+
+    plan = plan_of(tmp_path)
+    plan.figures = [PaperFigure("0", "Broken.", make), *plan.figures]
+    done = carry_out(plan, jobs=2)
+    assert [result.figure for result in done.results] == ["1", "2"]
+    assert done.left_out == ["figure 0 left out: every point needs a positive error"]
+
+
+def test_goes_on_after_kill_9(tmp_path: Path) -> None:
+    words = [sys.executable, "-m", "tests.narrows.papers.tiny", str(tmp_path), "60"]
+    process = subprocess.Popen(words, cwd=ROOT, env=os.environ | {"PYTHONPATH": str(ROOT)})
+    plan = plan_of(tmp_path, duration=60.0)
+    begun = [run.folder / "observables.dat" for run in plan.runs]
+    for _ in range(600):
+        if any(path.exists() for path in begun):
+            break
+        time.sleep(0.05)
+    process.send_signal(signal.SIGKILL)
+    process.wait()
+    assert not (tmp_path / "results.json").exists()
+    done = carry_out(plan, jobs=2)
+    assert done.left_out == []
+    undisturbed = plan_of(tmp_path / "again", duration=60.0)
+    carry_out(undisturbed, jobs=2)
+    killed, whole = (
+        (p.out / "figure-1.csv").read_text().splitlines()[1:] for p in (plan, undisturbed)
+    )
+    np.testing.assert_array_equal(
+        [float(line.split(",")[1]) for line in killed],
+        [float(line.split(",")[1]) for line in whole],
+    )
