@@ -122,5 +122,4 @@ def difference(one: Estimate, other: Estimate) -> Estimate:
 
 def fit(x: ArrayLike, y: Sequence[Estimate], degree: int = 1) -> list[Estimate]:
     """Coefficients of 1, x, x^2, ... of a polynomial through measured points."""
-    values, errors = [one.value for one in y], [one.error for one in y]
-    return fit_polynomial(x, np.array(values, float), np.array(errors, float), degree)
+    return list(fit_polynomial(x, y, degree).coefficients)
