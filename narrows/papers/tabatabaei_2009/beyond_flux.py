@@ -11,8 +11,8 @@ from functools import cache
 import numpy as np
 from matplotlib.figure import Figure
 
-from analysis import blocking
-from analysis.blocking import Estimate
+from analysis import correlated_mean
+from analysis.estimate import Estimate
 from analysis.flux import asep_form, current
 from analysis.line_fit import PolynomialFit, fit_polynomial
 from analysis.settling import settling_series
@@ -93,7 +93,10 @@ def homogeneous(directories: Directories, where: Point, window: tuple[float, flo
     rest = np.concatenate([run.rest[part] for run, part in zip(runs, used, strict=True)])
     moving = np.concatenate([run.co_moving[part] for run, part in zip(runs, used, strict=True)])
     return Homogeneous(
-        where, blocking.mean(rest), blocking.mean(moving), blocking.mean(rest - moving)
+        where,
+        correlated_mean.mean(rest),
+        correlated_mean.mean(moving),
+        correlated_mean.mean(rest - moving),
     )
 
 
@@ -162,7 +165,7 @@ def homogeneous_law(directories: Directories, quality: Quality) -> Law:
         fit_polynomial(densities, [one.rest for one in found]),
         tuple(one.rest.error or 0.0 for one in found),
         fit_polynomial(densities, [one.coupling for one in found], degree=0),
-        blocking.mean(flow).scaled(1 / (fluid.density * fluid.gravity)),
+        correlated_mean.mean(flow).scaled(1 / (fluid.density * fluid.gravity)),
     )
 
 

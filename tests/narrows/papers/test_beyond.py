@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from analysis.blocking import Estimate
+from analysis.estimate import Estimate
 from analysis.line_fit import fit_polynomial
 from lammps_inputs.scenes.channel import Channel
 from narrows.papers.figure import Quality
