@@ -22,7 +22,7 @@ JSON_VALUES: st.SearchStrategy[Any] = st.one_of(
 )
 
 
-def _bytes(file: Path, change: Callable[[bytearray], bytes]) -> None:
+def _bytes(file: Path, change: Callable[[bytearray], bytes | bytearray]) -> None:
     file.write_bytes(change(bytearray(file.read_bytes())))
 
 

@@ -72,9 +72,8 @@ class Runs:
     def __init__(self, folder: Path) -> None:
         self.finished, self.half_way = folder / "finished", folder / "half_way"
         self.others = {self.finished: folder / "finished2", self.half_way: folder / "half_way2"}
-        for seed, finished, half_way in (
-            (1, self.finished, self.half_way),
-            (2, *self.others.values()),
+        for seed, (finished, half_way) in enumerate(
+            ((self.finished, self.half_way), tuple(self.others.values())), start=1
         ):
             with Simulation(scene(seed), "reference", finished) as run:
                 run.finish()
