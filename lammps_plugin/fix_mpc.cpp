@@ -1,6 +1,7 @@
 #include "fix_mpc.h"
 
 #include "core/cell_coupling.h"
+#include "core/fluid_file.h"
 
 #include "atom.h"
 #include "comm.h"
@@ -161,9 +162,12 @@ template <int D> void FixMPC<D>::write_restart(FILE *file)
 
 template <int D> void FixMPC<D>::restart(char *buffer)
 {
-  make_solver(MpcState<D>::particles_in(buffer));
-  check_processes();
-  colloids_.pulls = state_->restart(buffer);
+  guarded([&] {
+    const auto header = mpc::read_restart_header<D>(buffer, given_.seed);
+    make_solver(static_cast<double>(header.fluid.particles));
+    check_processes();
+    colloids_.pulls = state_->restart(buffer);
+  });
 }
 
 template <int D> void FixMPC<D>::add_forces()
