@@ -23,6 +23,9 @@ Array = NDArray[np.float64]
 Steps = NDArray[np.int64]
 
 
+BOX_PRECISION = 1e-5  # MDAnalysis keeps edges in float32
+
+
 @dataclass(frozen=True)
 class Table:
     """Averages over each sampling interval.
@@ -203,6 +206,17 @@ class RunDirectory:
         """
         return read_progress(self.path) if is_begun(self.path) else None
 
+    def _checked(self, name: str) -> Path:
+        """The path of an output, once it begins with what it held at the newest checkpoint.
+
+        Raises:
+            RunDirectoryError: when it is missing or damaged.
+        """
+        path = self.path / name
+        if not path.is_file():
+            refuse(path, "missing")
+        return self.progress.require(self.path, name) if self.progress else path
+
     def wall_seconds(self) -> float | None:
         """Wall time of the run: from `progress.json`, else from LAMMPS's log, else None [s]."""
         if self.progress:
@@ -217,17 +231,21 @@ class RunDirectory:
 
     def finished(self) -> bool:
         """Whether the run came to its end, as `progress.json` or else its last output says."""
-        if self.progress:
-            return self.progress.finished
-        return self._last_step() >= self.clock.total_steps
+        step = self.progress.step if self.progress else self._last_step()
+        return step >= self.clock.total_steps
 
     def simulated_time(self) -> float:
         """Time up to the last output [t0]."""
         return self._last_step() * self.time_step
 
     def _last_step(self) -> int:
-        table = next(output for output in self.manifest.system.outputs if output.kind == "table")
-        return int(self.table(table.file.partition(".")[0]).steps[-1])
+        return int(self.table(self._first_table().file.partition(".")[0]).steps[-1])
+
+    def _first_table(self) -> Output:
+        for output in self.manifest.system.outputs:
+            if output.kind == "table":
+                return output
+        raise RunDirectoryError(f"{self.path / 'manifest.json'}: no table among outputs")
 
     def _output(self, name: str, kind: str) -> Output:
         """The output whose file has that name, without its ending."""
@@ -289,13 +307,13 @@ class RunDirectory:
             RunDirectoryError: when the trajectory is missing, malformed or has no complete frame.
         """
         name = self._output(name, "trajectory").file
-        self._require_file(name)
+        path = self._checked(name)
         with warnings.catch_warnings():
             warnings.filterwarnings("ignore", message="Guessed all Masses")
             warnings.filterwarnings("ignore", message="Some of the additional columns")
             try:
                 universe = MDAnalysis.Universe(
-                    str(self.path / name),
+                    str(path),
                     dt=self.time_step,
                     additional_columns=["ix", "iy", "iz"],
                 )
@@ -312,6 +330,9 @@ class RunDirectory:
                 f"{self.path / name}: {universe.atoms.n_atoms} particles; the manifest says "
                 f"{expected}"
             )
+        for edge, size in zip(first.dimensions, self.box.sizes, strict=False):
+            if abs(edge - size) > BOX_PRECISION * size:
+                refuse(path, f"a box edge of {edge:g}; the manifest says {size:g}")
         universe.atoms.masses = self._each_particle("mass")
         return universe
 
@@ -350,10 +371,6 @@ class RunDirectory:
         species = np.array(self._each_particle("name"))
         return Particles(steps, results.positions, results.velocities, species)
 
-    def _require_file(self, name: str) -> None:
-        if not (self.path / name).is_file():
-            raise RunDirectoryError(f"{self.path / name}: missing")
-
     def _read_table(
         self, name: str, mark: str, wanted: Sequence[str]
     ) -> tuple[list[int], int, Array]:
@@ -362,7 +379,7 @@ class RunDirectory:
         The comment line that holds `mark` names the columns. A last line that is cut short is left
         out.
         """
-        text = read_text(self.path / name, largest=math.inf)
+        text = read_text(self._checked(name), largest=math.inf)
         lines = text[: text.rfind("\n") + 1].splitlines()
         comments = [line[1:] for line in lines if line.startswith("#")]
         names = next((line.split() for line in comments if mark in line), [])
@@ -389,12 +406,30 @@ class RunDirectory:
 
     def _check_steps(self, name: str, steps: Sequence[float] | NDArray[Any], first: int) -> Steps:
         """The steps as integers, when they start at the first and leave no gap."""
-        found = np.asarray(steps).astype(np.int64)
+        given = np.asarray(steps)
+        if not np.all(np.abs(given) < 2**53):
+            refuse(self.path / name, "a step that is no step")
+        found = given.astype(np.int64)
         expected = first + self.clock.sample_steps * np.arange(len(found))
-        wrong = np.flatnonzero(found != expected)
+        wrong = np.flatnonzero((found != expected) | (found != given))
         if len(wrong):
             raise RunDirectoryError(
                 f"{self.path / name}: step {expected[wrong[0]]} expected, "
-                f"step {found[wrong[0]]} found"
+                f"step {given[wrong[0]]:.17g} found"
             )
+        self._check_end(name, int(found[-1]))
         return found
+
+    def _check_end(self, name: str, last: int) -> None:
+        """That the output goes as far as the run: to its end, or to what else tells of it."""
+        total, sample = self.clock.total_steps, self.clock.sample_steps
+        least, most = 0, total
+        if self.progress:
+            least = self.progress.step
+        elif name != self._first_table().file:
+            # a deck run by hand writes all outputs of a step, one after the other
+            end = self._last_step()
+            least, most = end if end >= total else end - sample, min(total, end + sample)
+        if not least <= last <= most:
+            now = least if last < least else most
+            refuse(self.path / name, f"ends at step {last}; the run is at step {now} of {total}")

@@ -1,8 +1,8 @@
 #include "fix_mpc.h"
 
-#include "core/force_coupling.h"
-#include "core/no_slip_walls.h"
+#include "core/cell_coupling.h"
 
+#include "atom.h"
 #include "comm.h"
 #include "domain.h"
 #include "error.h"
@@ -18,15 +18,14 @@ using namespace FixConst;
 template <int D>
 FixMPC<D>::FixMPC(LAMMPS *lmp, int narg, char **arg) :
     Fix(lmp, narg, arg), given_(lmp, narg, arg), processes_(*comm, world),
-    colloids_(lmp, given_, processes_)
+    colloids_(lmp, this, given_.colloid_bit, given_.temperature, given_.edge, processes_)
 {
   if (std::string(update->unit_style) != "lj")
     error->all(FLERR, "fix mpc: units {}: must be lj", update->unit_style);
   if (domain->triclinic) error->all(FLERR, "fix mpc: the box must not be triclinic");
-  if (!domain->xperiodic || (D == 3 && !domain->zperiodic))
-    error->all(FLERR, "fix mpc: boundary: must be p in x and z; y may be f, for walls");
-  if (!domain->yperiodic && (domain->boundary[1][0] != 1 || domain->boundary[1][1] != 1))
-    error->all(FLERR, "fix mpc: boundary: y must be p or f");
+  for (int a = 0; a < D; ++a)
+    if (!domain->periodicity[a] && (domain->boundary[a][0] != 1 || domain->boundary[a][1] != 1))
+      error->all(FLERR, "fix mpc: boundary: {} must be p or f", "xyz"[a]);
 
   restart_global = 1;
   nevery = given_.every;
@@ -38,6 +37,7 @@ FixMPC<D>::FixMPC(LAMMPS *lmp, int narg, char **arg) :
   size_array_cols = 5;
   extscalar = extvector = extarray = 0;
   dynamic_group_allow = 0;
+  comm_forward = comm_reverse = MpcColloids<D>::MOST_CARRIED;
   if (!given_.profile_file.empty())
     profile_ = std::make_unique<MpcProfile>(lmp, given_.profile_file, given_.profile_append, id);
 }
@@ -53,15 +53,20 @@ template <int D> void FixMPC<D>::init()
     error->all(FLERR, "fix mpc: comm_style tiled is not supported");
   if (!given_.interactions.empty() && !force->newton_pair)
     error->all(FLERR, "fix mpc: newton: must be on, forces on ghost colloids are to be summed");
+  if (!given_.radii.empty() && !atom->omega_flag)
+    error->all(FLERR, "fix mpc: reflect: needs atom_style sphere, colloids rotate");
   if (domain->box_change_size || domain->box_change_shape)
     error->all(FLERR, "fix mpc: the box must not change");
   if (!solver_) {
-    make_solver();
-    if (given_.load_file.empty())
-      state_->create(colloids_.all());
-    else
+    const bool loading = !given_.load_file.empty();
+    make_solver(loading ? MpcState<D>::particles_in(*error, given_.load_file) : given_.particles);
+    check_processes();
+    if (loading)
       state_->load(given_.load_file);
+    else
+      state_->create(colloids_.all(), coupling());
   }
+  check_processes();
   if (update->dt * given_.every != interval_)
     error->all(FLERR, "fix mpc: timestep: must not change");
   if (!open_ && update->ntimestep % given_.every)
@@ -69,7 +74,31 @@ template <int D> void FixMPC<D>::init()
                update->ntimestep);
 }
 
-template <int D> void FixMPC<D>::make_solver()
+// A process without cells would wait for particles that nobody sends it.
+template <int D> void FixMPC<D>::check_processes()
+{
+  const auto lower = state_->lower(), upper = state_->upper();
+  for (int a = 0; a < D; ++a)
+    if (processes_.any(upper[a] <= lower[a]))
+      error->all(FLERR, "fix mpc: {} processes along {} are too many for its {} cells",
+                 comm->procgrid[a], "xyz"[a], solver_->grid().shape[a]);
+}
+
+template <int D>
+std::unique_ptr<mpc::Coupling<D>>
+FixMPC<D>::make_coupling(const mpc::Vector<D> &field, const mpc::Walls<D> *walls) const
+{
+  if (!given_.interactions.empty())
+    return std::make_unique<mpc::ForceCoupling<D>>(given_.interactions, interval_,
+                                                   given_.temperature, field, walls);
+  if (!given_.radii.empty())
+    return std::make_unique<mpc::ReflectionCoupling<D>>(given_.radii, given_.placement, interval_,
+                                                        given_.temperature, field, walls);
+  if (given_.in_collision) return std::make_unique<mpc::CellCoupling<D>>();
+  return nullptr;
+}
+
+template <int D> void FixMPC<D>::make_solver(double particles)
 {
   mpc::Vector<D> box;
   std::array<bool, D> periodic;
@@ -80,14 +109,20 @@ template <int D> void FixMPC<D>::make_solver()
   const mpc::Grid<D> grid(box, periodic, given_.edge);
   interval_ = update->dt * given_.every;
 
+  auto field = given_.field;
+  if (mpc::square<D>(given_.compensated) > 0) {
+    const double masses = colloids_.mass() / particles;
+    for (int a = 0; a < D; ++a) field[a] -= masses * given_.compensated[a];
+  }
   const mpc::Rotation rotation(given_.angle * M_PI / 180, given_.axes);
-  mpc::Method<D> method{
-      given_.seed, interval_, given_.field, rotation, given_.shifted, {}, {}, {}, {}};
-  if (!domain->yperiodic)
-    method.walls =
-        std::make_unique<mpc::NoSlipWalls<D>>(domain->yprd, given_.density, given_.temperature);
+  mpc::Method<D> method{given_.seed, interval_, field, rotation, given_.shifted, {}, {}, {}, {}};
+  if (given_.walls)
+    method.walls = std::make_unique<mpc::NoSlipWalls<D>>(
+        grid, given_.virtual_particles ? given_.density : 0, given_.temperature,
+        given_.wall_velocities);
   if (given_.tstat == "layer")
-    method.thermostat = std::make_unique<mpc::LayerThermostat<D>>(given_.temperature);
+    method.thermostat = std::make_unique<mpc::LayerThermostat<D>>(
+        given_.temperature, method.walls ? method.walls->axes()[0] : 1);
   else if (given_.tstat == "monte_carlo")
     method.thermostat = std::make_unique<mpc::MonteCarloThermostat<D>>(given_.temperature);
   else if (given_.tstat == "maxwell_boltzmann")
@@ -100,11 +135,10 @@ template <int D> void FixMPC<D>::make_solver()
     method.random_solvent = std::make_unique<mpc::ShuffledSolvent<D>>();
   else if (given_.hydro == "bath")
     method.random_solvent = std::make_unique<mpc::BathSolvent<D>>(given_.temperature);
-  if (!given_.interactions.empty())
-    method.coupling = std::make_unique<mpc::ForceCoupling<D>>(
-        interval_, given_.temperature, given_.field, method.walls.get());
+  method.coupling = make_coupling(field, method.walls.get());
   solver_ = std::make_unique<mpc::Solver<D>>(grid, std::move(method), processes_);
   state_ = std::make_unique<MpcState<D>>(lmp, given_, *solver_);
+  colloids_.set_coupling(coupling());
 }
 
 template <int D> int FixMPC<D>::modify_param(int narg, char **arg)
@@ -127,14 +161,15 @@ template <int D> void FixMPC<D>::write_restart(FILE *file)
 
 template <int D> void FixMPC<D>::restart(char *buffer)
 {
-  make_solver();
+  make_solver(MpcState<D>::particles_in(buffer));
+  check_processes();
   colloids_.pulls = state_->restart(buffer);
 }
 
 template <int D> void FixMPC<D>::add_forces()
 {
   colloids_.follow();
-  guarded([&] { solver_->coupling()->forces(colloids_.seen(), colloids_.forces()); });
+  guarded([&] { coupling()->forces(colloids_.seen(), colloids_.forces()); });
   colloids_.apply_forces();
 }
 
@@ -150,13 +185,13 @@ template <int D> template <class Action> void FixMPC<D>::guarded(const Action &a
 
 template <int D> void FixMPC<D>::setup_pre_reverse(int, int)
 {
-  if (given_.interactions.empty()) return;
+  if (!coupling()) return;
   if (!open_) {
-    colloids_.see(*solver_->coupling(), interval_);
-    if (colloids_.repeat_pulls()) return;
+    colloids_.see(interval_);
+    if (!couples_every_step() || colloids_.repeat_pulls()) return;
     guarded([&] { solver_->find_near(colloids_.seen(), colloids_.speed()); });
   }
-  add_forces();
+  if (couples_every_step()) add_forces();
 }
 
 template <int D> void FixMPC<D>::initial_integrate(int)
@@ -166,31 +201,70 @@ template <int D> void FixMPC<D>::initial_integrate(int)
     guarded([&] { solver_->begin_interval(colloids_.seen(), colloids_.speed()); });
     open_ = true;
   }
-  if (!given_.interactions.empty()) guarded([&] { solver_->coupling()->drift(update->dt); });
+  if (couples_every_step()) guarded([&] { coupling()->drift(update->dt); });
 }
 
 template <int D> void FixMPC<D>::pre_reverse(int, int)
 {
-  if (!given_.interactions.empty()) add_forces();
+  if (couples_every_step()) add_forces();
 }
 
 template <int D> void FixMPC<D>::final_integrate()
 {
-  if (!given_.interactions.empty()) solver_->coupling()->kick(update->dt);
+  if (couples_every_step()) coupling()->kick(update->dt);
 }
 
 template <int D> void FixMPC<D>::end_of_step()
 {
-  colloids_.follow();
+  if (couples_every_step())
+    colloids_.follow();
+  else if (coupling())
+    colloids_.see_velocities();
   guarded([&] { solver_->end_interval(colloids_.seen()); });
   open_ = false;
-  if (!given_.interactions.empty()) {
+  if (couples_every_step())
     colloids_.remember_pulls();
-    colloids_.see(*solver_->coupling(), interval_);
-  }
+  else if (coupling())
+    colloids_.apply_impulses(coupling()->impulses());
+  if (given_.momentum_every > 0 && solver_->collisions() % given_.momentum_every == 0)
+    remove_momentum();
+  if (coupling()) colloids_.see(interval_);
   if (!profile_) return;
   if (update->ntimestep % given_.profile_every == 0) profile_->look(layers());
   if (update->ntimestep % given_.profile_frequency == 0) profile_->write(solver_->particles());
+}
+
+// Take the total momentum from all velocities alike.
+template <int D> void FixMPC<D>::remove_momentum()
+{
+  auto sums = colloids_.momentum();
+  processes_.sum(sums.data(), D);
+  const auto of_fluid = solver_->momentum();
+  const double mass = solver_->particles() + colloids_.mass();
+  mpc::Vector<D> change;
+  for (int a = 0; a < D; ++a) change[a] = -(sums[a] + of_fluid[a]) / mass;
+  solver_->add_velocity(change);
+  colloids_.add_velocity(change);
+}
+
+template <int D> int FixMPC<D>::pack_forward_comm(int count, int *atoms, double *buffer, int, int *)
+{
+  return colloids_.pack(count, atoms, buffer);
+}
+
+template <int D> void FixMPC<D>::unpack_forward_comm(int count, int first, double *buffer)
+{
+  colloids_.set(count, first, buffer);
+}
+
+template <int D> int FixMPC<D>::pack_reverse_comm(int count, int first, double *buffer)
+{
+  return colloids_.pack(count, first, buffer);
+}
+
+template <int D> void FixMPC<D>::unpack_reverse_comm(int count, int *atoms, double *buffer)
+{
+  colloids_.add(count, atoms, buffer);
 }
 
 // Layers of the fluid as it is now.

@@ -36,9 +36,19 @@ template <int D> class FixMPC : public Fix {
   int modify_param(int, char **) override;
   void write_restart(FILE *) override;
   void restart(char *) override;
+  int pack_forward_comm(int, int *, double *, int, int *) override;
+  void unpack_forward_comm(int, int, double *) override;
+  int pack_reverse_comm(int, int, double *) override;
+  void unpack_reverse_comm(int, int *, double *) override;
 
  private:
-  void make_solver();
+  void make_solver(double particles);
+  std::unique_ptr<mpc::Coupling<D>> make_coupling(const mpc::Vector<D> &field,
+                                                  const mpc::Walls<D> *) const;
+  mpc::Coupling<D> *coupling() { return solver_->coupling(); }
+  bool couples_every_step() { return coupling() && coupling()->every_step(); }
+  void check_processes();
+  void remove_momentum();
   void add_forces();
   template <class Action> void guarded(const Action &);
   const std::vector<mpc::Layer> &layers();

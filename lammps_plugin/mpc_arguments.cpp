@@ -9,6 +9,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <map>
 #include <vector>
 
 using namespace LAMMPS_NS;
@@ -51,6 +52,7 @@ MpcArguments<D>::MpcArguments(LAMMPS *lmp, int narg, char **arg)
     if (domain->periodicity[a] && std::abs(rows - std::round(rows)) > 1e-9 * rows)
       error->all(FLERR, "fix mpc: hgrid {}: the periodic length {} of {} is not a multiple of it",
                  edge, domain->prd[a], "xyz"[a]);
+    walls |= !domain->periodicity[a];
     if (rows < 2 - 1e-9)
       error->all(FLERR, "fix mpc: hgrid {}: less than 2 cells along {}", edge, "xyz"[a]);
   }
@@ -93,6 +95,45 @@ MpcArguments<D>::MpcArguments(LAMMPS *lmp, int narg, char **arg)
         error->all(FLERR, "fix mpc: force {}: no such atom type", arg[first]);
       interactions[type] = {number(first + 1, "force epsilon", not_negative, "not negative"),
                              number(first + 2, "force sigma", positive, "positive")};
+    } else if (keyword == "reflect") {
+      const int first = values(3);
+      const int type = utils::inumeric(FLERR, arg[first], false, lmp);
+      if (type < 1 || type > lmp->atom->ntypes)
+        error->all(FLERR, "fix mpc: reflect {}: no such atom type", arg[first]);
+      radii[type] = number(first + 1, "reflect radius", positive, "positive");
+      const auto place = choice(first + 2, "reflect placement", {"entry", "nearest"}) == "entry"
+          ? mpc::Placement::Entry
+          : mpc::Placement::Nearest;
+      if (radii.size() > 1 && place != placement)
+        error->all(FLERR, "fix mpc: reflect placement {}: must be the same for all types",
+                   arg[first + 2]);
+      placement = place;
+    } else if (keyword == "collide") {
+      in_collision = choice(values(1), "collide", {"yes", "no"}) == "yes";
+    } else if (keyword == "wall") {
+      const int first = values(4);
+      const std::vector<std::string> faces{"xlo", "xhi", "ylo", "yhi", "zlo", "zhi"};
+      const auto face = choice(first, "wall", {faces.begin(), faces.begin() + 2 * D});
+      const int which =
+          static_cast<int>(std::find(faces.begin(), faces.end(), face) - faces.begin());
+      if (domain->periodicity[which / 2])
+        error->all(FLERR, "fix mpc: wall {}: the face is periodic", face);
+      for (int a = 0; a < D; ++a)
+        wall_velocities[which][a] = number(first + 1 + a, "wall velocity", finite, "finite");
+      for (int a = 0; a < D; ++a)
+        if (wall_velocities[which][a] != 0 && !domain->periodicity[a])
+          error->all(FLERR, "fix mpc: wall {}: it can move along periodic axes only, its v{} must be 0",
+                     face, "xyz"[a]);
+    } else if (keyword == "virtual") {
+      virtual_particles = choice(values(1), "virtual", {"yes", "no"}) == "yes";
+    } else if (keyword == "compensate") {
+      const int first = values(3);
+      for (int a = 0; a < D; ++a)
+        compensated[a] = number(first + a, "compensate", finite, "finite");
+    } else if (keyword == "momentum") {
+      momentum_every = utils::inumeric(FLERR, arg[values(1)], false, lmp);
+      if (momentum_every < 1)
+        error->all(FLERR, "fix mpc: momentum {}: must be positive", arg[i - 1]);
     } else if (keyword == "bins") {
       bins = utils::inumeric(FLERR, arg[values(1)], false, lmp);
       if (bins < 1) error->all(FLERR, "fix mpc: bins {}: must be positive", arg[i - 1]);
@@ -117,14 +158,27 @@ MpcArguments<D>::MpcArguments(LAMMPS *lmp, int narg, char **arg)
     error->all(FLERR, "fix mpc: one of create and load must be given");
   if (particles != std::round(particles) || particles > UINT32_MAX)
     error->all(FLERR, "fix mpc: create {}: must be a whole number below 2^32", particles);
-  if (!domain->yperiodic && density == 0)
+  if (walls && virtual_particles && density == 0)
     error->all(FLERR, "fix mpc: density: needed for the virtual particles of the walls");
+  int pairs = 0;
+  for (int a = 0; a < D; ++a) pairs += !domain->periodicity[a];
+  if (tstat == "layer" && pairs > 1)
+    error->all(FLERR, "fix mpc: tstat layer: there must not be {} pairs of walls", pairs);
   if (D == 3 && axes == mpc::Axes::Coordinate && angle != 90)
     error->all(FLERR, "fix mpc: angle {}: about coordinate axes it must be 90; else use axis random",
                angle);
   if (angle > 180) error->all(FLERR, "fix mpc: angle {}: must be at most 180", angle);
-  if (!interactions.empty() && !colloid_bit)
-    error->all(FLERR, "fix mpc: force: there is no colloid group");
+  for (const auto &[keyword, given] : std::map<std::string, bool>{{"force", !interactions.empty()},
+                                                                  {"reflect", !radii.empty()},
+                                                                  {"collide", in_collision}})
+    if (given && !colloid_bit)
+      error->all(FLERR, "fix mpc: {}: there is no colloid group", keyword);
+  if (!interactions.empty() + !radii.empty() + in_collision > 1)
+    error->all(FLERR, "fix mpc: only one of force, reflect and collide can be given");
+  if (mpc::square<D>(compensated) > 0 && !colloid_bit)
+    error->all(FLERR, "fix mpc: compensate: there is no colloid group");
+  if (walls && momentum_every > 0)
+    error->all(FLERR, "fix mpc: momentum: walls take up momentum; it is for a periodic box");
 }
 
 template struct LAMMPS_NS::MpcArguments<2>;

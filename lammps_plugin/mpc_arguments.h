@@ -2,10 +2,11 @@
 
 #pragma once
 
-#include "core/collision.h"
+#include "core/force_coupling.h"
+#include "core/no_slip_walls.h"
+#include "core/reflection_coupling.h"
 
 #include <cstdint>
-#include <map>
 #include <string>
 
 namespace LAMMPS_NS {
@@ -13,10 +14,7 @@ namespace LAMMPS_NS {
 template <int D> struct MpcArguments {
   MpcArguments(class LAMMPS *, int, char **);
 
-  struct Interaction {
-    double epsilon, sigma;
-  };
-
+  bool walls = false;    // whether there are any
   int every;
   int colloid_bit = 0;
   double temperature, edge;
@@ -29,7 +27,17 @@ template <int D> struct MpcArguments {
   bool shifted = true;
   std::string tstat = "none", hydro = "on";
   mpc::Vector<D> field{};
-  std::map<int, Interaction> interactions;    // by atom type
+  mpc::FaceVelocities<D> wall_velocities{};
+  bool virtual_particles = true;
+
+  // how the colloids are coupled, by atom type; one of three
+  typename mpc::ForceCoupling<D>::Interactions interactions;
+  typename mpc::ReflectionCoupling<D>::Radii radii;
+  mpc::Placement placement = mpc::Placement::Entry;
+  bool in_collision = false;
+
+  mpc::Vector<D> compensated{};    // acceleration of the colloids that the fluid balances
+  int momentum_every = 0;          // collisions between removals of the total momentum; 0: never
   int bins = 0;
   int profile_every = 0, profile_frequency = 0;
   std::string profile_file;

@@ -4,7 +4,6 @@
 #pragma once
 
 #include "core/coupling.h"
-#include "mpc_arguments.h"
 #include "mpi_processes.h"
 
 #include "pointers.h"
@@ -21,15 +20,23 @@ template <int D> struct Pull {
 
 template <int D> class MpcColloids : protected Pointers {
  public:
-  MpcColloids(LAMMPS *, const MpcArguments<D> &, MpiProcesses &);
+  MpcColloids(LAMMPS *, class Fix *, int group_bit, double temperature, double edge,
+              MpiProcesses &);
 
-  // Of all processes, each once.
+  // Whom the fluid feels; nullptr: nobody.
+  void set_coupling(const mpc::Coupling<D> *coupling) { coupling_ = coupling; }
+
+  // Of all processes, each once: those that the fluid feels, and the mass of the group.
   std::vector<mpc::Colloid<D>> all() const;
+  double mass() const;
 
   // Those that this process sees, as they stand after a collision; an error if the ghosts do not
   // reach as far as the coupling needs in an interval.
-  void see(const mpc::Coupling<D> &, double interval);
+  void see(double interval);
   const std::vector<mpc::Colloid<D>> &seen() const { return seen_; }
+
+  // The same with the velocities of ghosts, which LAMMPS does not keep.
+  void see_velocities();
 
   // None becomes faster before the next collision.
   double speed() const { return speed_; }
@@ -38,8 +45,23 @@ template <int D> class MpcColloids : protected Pointers {
   void follow();
 
   // Forces on what was seen, and their way to LAMMPS.
-  std::vector<mpc::Vector<D>> &forces() { return forces_; }
+  std::vector<mpc::Push<D>> &forces() { return forces_; }
   void apply_forces() const;
+
+  // Change the velocities and spins of those seen by what a collision gave to all their images.
+  void apply_impulses(const std::vector<mpc::Push<D>> &);
+
+  // Take so much from the velocity of the whole group; its momentum, of this process.
+  void add_velocity(const mpc::Vector<D> &);
+  mpc::Vector<D> momentum() const;
+
+  // Sums over the images of each colloid seen, and the parts of it that LAMMPS carries.
+  void sum_images(std::vector<double> &values, int width);
+  int pack(int count, const int *atoms, double *buffer) const;
+  int pack(int count, int first, double *buffer) const;
+  void add(int count, const int *atoms, const double *buffer);
+  void set(int count, int first, const double *buffer);
+  static constexpr int MOST_CARRIED = 16;    // values for each
 
   // Forces decide the last bits, so a continued run takes over those of the run before.
   void remember_pulls();
@@ -48,16 +70,22 @@ template <int D> class MpcColloids : protected Pointers {
 
  private:
   bool is_colloid(int atom) const;
+  double mass_of(int atom) const;
   mpc::Colloid<D> colloid(int atom) const;    // the velocity of a ghost only with comm_modify vel yes
   void read();
   int atom_at(double id, const mpc::Vector<D> &, double distance) const;
 
-  const MpcArguments<D> &given_;
+  class Fix *fix_;
+  int group_bit_;
+  double temperature_, edge_;
   MpiProcesses &processes_;
+  const mpc::Coupling<D> *coupling_ = nullptr;
   std::vector<mpc::Colloid<D>> seen_;    // colloids and images, in the order of the last collision
   std::vector<int> atoms_;               // index of the atom of each; -1 when it left the ghosts
-  std::vector<mpc::Vector<D>> forces_;
+  std::vector<mpc::Push<D>> forces_;
   double speed_ = 0;
+  std::vector<double> carried_;    // of each atom
+  int width_ = 0;
 };
 
 }    // namespace LAMMPS_NS

@@ -25,6 +25,19 @@ struct RestartHeader {
   std::int64_t processes, pulls;
 };
 
+// A file of a fluid, its header read.
+template <int D>
+FILE *open_fluid(Error &error, const std::string &name, mpc::FluidHeader &header)
+{
+  FILE *file = std::fopen(name.c_str(), "rb");
+  if (!file) error.one(FLERR, "fix mpc: load: cannot read {}", name);
+  if (std::fread(&header, sizeof header, 1, file) != 1 ||
+      std::memcmp(header.magic, MAGIC, sizeof MAGIC) || header.dimension != D ||
+      header.particles < 1)
+    error.one(FLERR, "fix mpc: load: {} is not a fluid in {} dimensions", name, D);
+  return file;
+}
+
 }    // namespace
 
 template <int D>
@@ -58,7 +71,8 @@ template <int D> std::array<int, D> MpcState<D>::upper() const
 
 // Uniform outside the colloids, Maxwell velocities, no momentum; a function of the seed and the
 // particle's number alone, so every process draws all and keeps its own.
-template <int D> void MpcState<D>::create(const std::vector<Colloid<D>> &colloids)
+template <int D> void MpcState<D>::create(const std::vector<Colloid<D>> &colloids,
+                                          const mpc::Coupling<D> *coupling)
 {
   solver_.reset(0, lower(), upper());
   const auto overlaps = [&](const Vector<D> &x) {
@@ -69,7 +83,8 @@ template <int D> void MpcState<D>::create(const std::vector<Colloid<D>> &colloid
         if (domain->periodicity[a])
           separation[a] -= domain->prd[a] * std::round(separation[a] / domain->prd[a]);
       }
-      if (mpc::square<D>(separation) < colloid.sigma * colloid.sigma) return true;
+      const double room = coupling->room(colloid.type);
+      if (mpc::square<D>(separation) < room * room) return true;
     }
     return false;
   };
@@ -92,26 +107,57 @@ template <int D> void MpcState<D>::create(const std::vector<Colloid<D>> &colloid
   solver_.zero_momentum();
 }
 
+template <int D> double MpcState<D>::particles_in(Error &error, const std::string &name)
+{
+  mpc::FluidHeader header;
+  std::fclose(open_fluid<D>(error, name, header));
+  return static_cast<double>(header.particles);
+}
+
+template <int D> double MpcState<D>::particles_in(const char *restart)
+{
+  RestartHeader header;
+  std::memcpy(&header, restart, sizeof header);
+  return static_cast<double>(header.fluid.particles);
+}
+
 template <int D> void MpcState<D>::load(const std::string &name)
 {
-  FILE *file = std::fopen(name.c_str(), "rb");
-  if (!file) error->one(FLERR, "fix mpc: load: cannot read {}", name);
   mpc::FluidHeader header;
-  if (std::fread(&header, sizeof header, 1, file) != 1 ||
-      std::memcmp(header.magic, MAGIC, sizeof MAGIC) || header.dimension != D)
-    error->one(FLERR, "fix mpc: load: {} is not a fluid in {} dimensions", name, D);
+  FILE *file = open_fluid<D>(*error, name, header);
   solver_.reset(header.collisions, lower(), upper());
+  std::vector<bool> known(header.particles);
   Particle<D> particle;
   for (std::int64_t n = 0; n < header.particles; ++n) {
     if (std::fread(&particle, sizeof particle, 1, file) != 1)
       error->one(FLERR, "fix mpc: load: {} ends before its {} particles", name, header.particles);
+    check(particle, known, name);
     for (int a = 0; a < D; ++a) particle.x[a] -= domain->boxlo[a];
     solver_.add(particle);
   }
   std::fclose(file);
   solver_.count();
-  if (solver_.particles() != static_cast<double>(header.particles))
-    error->all(FLERR, "fix mpc: load: {} has particles outside the box", name);
+}
+
+// Stop at a particle that cannot be; the numbers 0 ... N - 1 are each of one particle.
+template <int D>
+void MpcState<D>::check(const Particle<D> &particle, std::vector<bool> &known,
+                        const std::string &name) const
+{
+  const double number = particle.id;
+  if (!(number >= 0 && number < known.size() && number == std::floor(number)))
+    error->one(FLERR, "fix mpc: load: {} has a particle {}: numbers are whole, from 0 to {}", name,
+               number, known.size() - 1);
+  const auto place = static_cast<std::size_t>(number);
+  if (known[place]) error->one(FLERR, "fix mpc: load: {} has two particles {}", name, number);
+  known[place] = true;
+  for (int a = 0; a < D; ++a) {
+    const double x = particle.x[a];
+    if (!std::isfinite(x) ||
+        (!domain->periodicity[a] && (x < domain->boxlo[a] || x > domain->boxhi[a])))
+      error->one(FLERR, "fix mpc: load: particle {} of {} has {} = {}: not a number, or beyond a wall",
+                 number, name, "xyz"[a], x);
+  }
 }
 
 // Visit the particles of all processes on the first, process by process.

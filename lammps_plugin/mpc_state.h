@@ -23,7 +23,11 @@ template <int D> class MpcState : protected Pointers {
   std::array<int, D> lower() const;
   std::array<int, D> upper() const;
 
-  void create(const std::vector<mpc::Colloid<D>> &);
+  // How many particles a file has, or a restart.
+  static double particles_in(class Error &, const std::string &file);
+  static double particles_in(const char *restart);
+
+  void create(const std::vector<mpc::Colloid<D>> &, const mpc::Coupling<D> *);
   void load(const std::string &file);
   void save(const std::string &file);
 
@@ -33,6 +37,7 @@ template <int D> class MpcState : protected Pointers {
  private:
   std::array<int, D> bound(const double *corner) const;
   mpc::FluidHeader fluid_header() const;
+  void check(const mpc::Particle<D> &, std::vector<bool> &known, const std::string &file) const;
   template <class Visit> void gather(const Visit &);
 
   const MpcArguments<D> &given_;

@@ -8,6 +8,7 @@
 
 #include <mpi.h>
 
+#include <functional>
 #include <vector>
 
 namespace LAMMPS_NS {
@@ -40,14 +41,19 @@ class MpiProcesses : public mpc::Processes {
     return received;
   }
 
-  // Records of all processes on all, process by process; for the few that colloids are.
-  template <class Record> std::vector<Record> everyones(const std::vector<Record> &mine) const
+  void sum_images(std::vector<double> &values, int width) override { images(values, width); }
+
+  // How the host sums over images.
+  std::function<void(std::vector<double> &, int)> images;
+
+ protected:
+  std::vector<char> gather(const std::vector<char> &mine) override
   {
-    const int size = static_cast<int>(mine.size() * sizeof(Record));
+    const int size = static_cast<int>(mine.size());
     std::vector<int> sizes(comm_.nprocs), starts(comm_.nprocs);
     MPI_Allgather(&size, 1, MPI_INT, sizes.data(), 1, MPI_INT, world_);
     for (int p = 1; p < comm_.nprocs; ++p) starts[p] = starts[p - 1] + sizes[p - 1];
-    std::vector<Record> all((starts.back() + sizes.back()) / sizeof(Record));
+    std::vector<char> all(starts.back() + sizes.back());
     MPI_Allgatherv(mine.data(), size, MPI_BYTE, all.data(), sizes.data(), starts.data(), MPI_BYTE,
                    world_);
     return all;

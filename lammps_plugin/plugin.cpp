@@ -1,7 +1,12 @@
 // What LAMMPS calls when it loads the plugin: registers the styles.
 
+#include "compute_temp_configurational.h"
+#include "fix_configurational.h"
+#include "fix_isokinetic.h"
 #include "fix_mpc.h"
 #include "fix_wall_lj115.h"
+#include "pair_dlvo.h"
+#include "pair_soft.h"
 
 #include "domain.h"
 #include "lammps.h"
@@ -21,7 +26,7 @@ struct Plugin {
   const char *name;
   const char *info;
   const char *author;
-  Fix *(*creator)(LAMMPS *, int, char **);
+  void *creator;    // of a pair style, Pair *(LAMMPS *); of others, Style *(LAMMPS *, int, char **)
   void *handle;
 };
 using Register = void (*)(Plugin *, void *);
@@ -37,6 +42,21 @@ Fix *create_wall_lj115(LAMMPS *lammps, int narg, char **arg)
   return new FixWallLJ115(lammps, narg, arg);
 }
 
+Pair *create_dlvo(LAMMPS *lammps)
+{
+  return new PairDLVO(lammps);
+}
+
+template <class Base, class Style> Base *create(LAMMPS *lammps, int narg, char **arg)
+{
+  return new Style(lammps, narg, arg);
+}
+
+template <class Potential> Pair *create_pair(LAMMPS *lammps)
+{
+  return new PairSoft<Potential>(lammps);
+}
+
 }    // namespace
 
 extern "C" __attribute__((visibility("default"))) void lammpsplugin_init(void *lammps, void *handle,
@@ -47,17 +67,25 @@ extern "C" __attribute__((visibility("default"))) void lammpsplugin_init(void *l
   if (version != NARROWS_LAMMPS_VERSION) {
     utils::logmesg(static_cast<LAMMPS *>(lammps),
                    "narrows: its plugin was built for LAMMPS " NARROWS_LAMMPS_VERSION
-                   ", this is LAMMPS " + version + ": fix mpc and fix wall/lj115 are left out\n");
+                   ", this is LAMMPS " + version + ": its styles are left out\n");
     return;
   }
-  Plugin plugin{NARROWS_LAMMPS_VERSION, "fix", nullptr, nullptr, "narrows", nullptr, handle};
-  const auto add = reinterpret_cast<Register>(regfunc);
-  plugin.name = "mpc";
-  plugin.info = "multi-particle collision fluid";
-  plugin.creator = create_mpc;
-  add(&plugin, lammps);
-  plugin.name = "wall/lj115";
-  plugin.info = "12-6 potential of a line of wall particles";
-  plugin.creator = create_wall_lj115;
-  add(&plugin, lammps);
+  const auto add = [&](const char *style, const char *name, const char *info, auto *creator) {
+    Plugin plugin{NARROWS_LAMMPS_VERSION, style,     name, info, "narrows",
+                  reinterpret_cast<void *>(creator), handle};
+    reinterpret_cast<Register>(regfunc)(&plugin, lammps);
+  };
+  add("fix", "mpc", "multi-particle collision fluid", create_mpc);
+  add("fix", "wall/lj115", "12-6 potential of a line of wall particles", create_wall_lj115);
+  for (const char *name : {"isokinetic", "isokinetic/sllod"})
+    add("fix", name, "Gaussian isokinetic thermostat", create<Fix, FixIsokinetic>);
+  for (const char *name : {"configurational", "configurational/sllod"})
+    add("fix", name, "configurational thermostat", create<Fix, FixConfigurational>);
+  add("compute", "temp/configurational", "configurational temperature",
+      create<Compute, ComputeTempConfigurational>);
+  add("pair", "dlvo", "charged spheres with contact and lubrication", create_dlvo);
+  add("pair", soft::InverseTwelve::name, "inverse twelfth power",
+      create_pair<soft::InverseTwelve>);
+  add("pair", soft::WeeksChandlerAndersen::name, "Weeks-Chandler-Andersen repulsion",
+      create_pair<soft::WeeksChandlerAndersen>);
 }

@@ -78,19 +78,6 @@ class CurrentRelation:
         jump = self.flux(np.array([left, right]))
         return float((jump[1] - jump[0]) / (right - left))
 
-    def burgers(self, around: float) -> CurrentRelation:
-        """Burgers limit: j to second order about `around`; v = j'(u) then obeys v_t + v v_x = 0."""
-        point = np.array(around)
-        h = 1e-4 * (self.high - self.low)
-        j, slope = float(self.flux(point)), float(self.speed(point))
-        bend = float(self.speed(point + h) - self.speed(point - h)) / (2 * h)
-        return CurrentRelation(
-            lambda u: j + slope * (u - around) + bend * (u - around) ** 2 / 2,
-            lambda u: slope + bend * (u - around),
-            self.low,
-            self.high,
-        )
-
 
 def current_relation(model: LatticeGas) -> CurrentRelation:
     """j(u) of a model whose product measures are stationary.

@@ -12,17 +12,25 @@ from srd_driver import RunError
 from srd_driver.parallel import communicator
 
 
+def printable(text: str) -> str:
+    """The text without what would steer a terminal: names and notes may come from any file."""
+    return "".join(
+        sign if sign.isprintable() or sign == "\n" else sign.encode("unicode_escape").decode()
+        for sign in text
+    )
+
+
 def say(text: str) -> None:
     """Print a result, on the first process only."""
     if _first_process():
-        print(text, flush=True)
+        print(printable(text), flush=True)
 
 
 def warn(warnings: Iterable[str]) -> None:
     """Tell of what will be inaccurate, one line each on stderr, on the first process only."""
     if _first_process():
         for warning in warnings:
-            print(f"warning: {warning}", file=sys.stderr, flush=True)
+            print(printable(f"warning: {warning}"), file=sys.stderr, flush=True)
 
 
 @contextmanager
@@ -34,20 +42,21 @@ def user_errors() -> Iterator[None]:
     try:
         yield
     except (SceneError, RunDirectoryError) as error:
-        _complain(str(error))
+        complain(str(error))
         raise typer.Exit(2) from None
     except (RunError, OSError) as error:
-        _complain(str(error))
+        complain(str(error))
         raise typer.Exit(1) from None
     except KeyboardInterrupt as interrupt:
         advice = str(interrupt) or "go on from the newest checkpoint by --resume"
-        _complain(f"interrupted: {advice}")
+        complain(f"interrupted: {advice}")
         raise typer.Exit(130) from None
 
 
-def _complain(text: str) -> None:
+def complain(text: str) -> None:
+    """Say what is wrong, on the first process only."""
     if _first_process():
-        print(f"narrows: {text}", file=sys.stderr, flush=True)
+        print(printable(f"narrows: {text}"), file=sys.stderr, flush=True)
 
 
 def _first_process() -> bool:

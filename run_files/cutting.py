@@ -11,13 +11,14 @@ FRAME = b"ITEM: TIMESTEP"
 def cut_output(path: Path, kind: str, step: int) -> None:
     """Drop what the file of an output says of the time after a step; a missing one is left.
 
-    A trajectory loses the frame of the step too: the engine writes that one again.
+    A trajectory loses the frame of the step too: the engine writes that one again. A table loses
+    titles at its end, which LAMMPS repeats when it goes on with a file.
 
     Raises:
         RunDirectoryError: when the file holds something else.
     """
     if path.exists():
-        size = _first_frame(path, step) if kind == "trajectory" else _first_row(path, step)
+        size = _first_frame(path, step) if kind == "trajectory" else _end_of_rows(path, step)
         with path.open("r+b") as file:
             file.truncate(size)
 
@@ -45,13 +46,19 @@ def _first_frame(path: Path, step: int) -> int:
     return path.stat().st_size if frame is None else frame
 
 
-def _first_row(path: Path, step: int) -> int:
+def _end_of_rows(path: Path, step: int) -> int:
+    """Where the rows up to a step end; the titles, if there are none."""
+    end = 0
+    in_titles = True
     for offset, line in _lines(path):
-        if not line.endswith(b"\n"):
-            return offset
-        if not line.startswith((b"#", b" ")) and _number(line, path) > step:
-            return offset
-    return path.stat().st_size
+        is_title = line.startswith(b"#")
+        in_titles &= is_title
+        is_labelled = not line.startswith((b"#", b" "))
+        if not line.endswith(b"\n") or (is_labelled and _number(line, path) > step):
+            break
+        if in_titles or not is_title:
+            end = offset + len(line)
+    return end
 
 
 def _number(line: bytes, path: Path) -> int:

@@ -7,17 +7,20 @@ from typing import Annotated, Any, Literal, Self
 from pydantic import Field, model_validator
 
 from run_files.manifest_0_1 import from_narrows_0_1
-from run_files.reading import Part, RunDirectoryError, checked, read_json, refuse
+from run_files.names import FileName
+from run_files.reading import Part, RunDirectoryError, checked, read_json, read_toml, refuse
 
 FORMAT = 2  # of the manifest; narrows 0.1 wrote no number
 NAME = "manifest.json"
+FLUID = "fluid"
 VARIABLES = "variables.json"
+SCENE = "scene.toml"
+CHANGEABLE = {"duration"}  # fields: a run may be resumed to last longer
 CHANGED_BY_DECK = ("total_steps", "sample_steps")  # entries of the clock in variables.json
 
 Positive = Annotated[float, Field(gt=0)]
 Count = Annotated[int, Field(gt=0, lt=2**63)]
 Whole = Annotated[int, Field(ge=0, lt=2**63)]
-FileName = Annotated[str, Field(pattern=r"^[A-Za-z0-9][A-Za-z0-9_.-]*$", max_length=100)]
 Word = Annotated[str, Field(pattern=r"^[A-Za-z_][A-Za-z0-9_]*$", max_length=100)]
 Vector = tuple[float, float, float]
 
@@ -127,6 +130,28 @@ class System(Part):
     outputs: tuple[Output, ...]
     measures: tuple[Word, ...]
 
+    @model_validator(mode="after")
+    def _parts_fit(self) -> Self:
+        names = [species.name for species in self.species]
+        _require_different("species", names)
+        _require_different("outputs", [output.file for output in self.outputs])
+        known = {*names, FLUID}
+        named = [name for i in self.interactions for name in (i.first, i.second)]
+        named += [drive.target for drive in self.drives]
+        named += [name for wall in self.walls for name, _ in wall.potentials]
+        for name in named:
+            if name not in known:
+                raise ValueError(f"{name}: no such species; there is {', '.join(sorted(known))}")
+        for wall in self.walls:
+            if wall.axis >= self.box.dimensions or self.box.periodic[wall.axis]:
+                raise ValueError(f"a wall across axis {wall.axis}, which is periodic or none")
+        return self
+
+
+def _require_different(what: str, names: list[str]) -> None:
+    if len(set(names)) < len(names):
+        raise ValueError(f"{what}: a name stands twice in {', '.join(names)}")
+
 
 class Manifest(Part):
     """What a run is."""
@@ -167,8 +192,17 @@ def read_manifest(directory: Path) -> Manifest:
             f"format {version!r}: of a newer narrows; this one reads format 2, and narrows 0.1",
         )
     manifest = checked(Manifest, content, path)
+    if (directory / SCENE).is_file():
+        _require_same_scene(manifest, read_toml(directory / SCENE), path)
     variables = directory / VARIABLES
     return _with_variables(manifest, variables) if variables.is_file() else manifest
+
+
+def _require_same_scene(manifest: Manifest, scene: dict[str, Any], path: Path) -> None:
+    told = {"scene": manifest.scene} | manifest.fields
+    for name in (told.keys() | scene.keys()) - CHANGEABLE:
+        if told.get(name) != scene.get(name):
+            refuse(path, f"{name} = {told.get(name)!r}, but {scene.get(name)!r} in {SCENE}")
 
 
 def _with_variables(manifest: Manifest, path: Path) -> Manifest:

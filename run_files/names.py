@@ -2,9 +2,14 @@
 
 import re
 from pathlib import Path
+from typing import Annotated
+
+from pydantic import Field
 
 CHECKPOINT = re.compile(r"checkpoint\.(\d{1,19})\.(restart|npz)")
 LONGEST_NAME = 255  # bytes, of most file systems
+
+FileName = Annotated[str, Field(pattern=r"^[A-Za-z0-9][A-Za-z0-9_.-]*$", max_length=100)]
 
 
 def checkpoint_name(step: int, suffix: str) -> str:
@@ -12,10 +17,10 @@ def checkpoint_name(step: int, suffix: str) -> str:
     return f"checkpoint.{step}.{suffix}"
 
 
-def is_checkpoint(name: str, step: int) -> bool:
-    """Whether this is the name of a checkpoint of that step."""
+def is_checkpoint(name: str, step: int, suffix: str | None = None) -> bool:
+    """Whether this is the name of a checkpoint of that step, and of that suffix."""
     match = CHECKPOINT.fullmatch(name)
-    return match is not None and name == checkpoint_name(step, match[2])
+    return match is not None and name == checkpoint_name(step, suffix or match[2])
 
 
 def is_run_name(name: str) -> bool:

@@ -2,15 +2,17 @@
 
 import contextlib
 from pathlib import Path
-from typing import Annotated, Self
+from typing import Annotated, Final, Literal, Self
 
 from pydantic import Field, model_validator
 
-from run_files.names import is_checkpoint
+from run_files.checksums import Checksum
+from run_files.names import FileName, is_checkpoint
 from run_files.reading import Part, RunDirectoryError, checked, read_json, read_text
 from run_files.writing import replace_text
 
 NAME = "progress.json"
+FORMAT: Final = 2  # of progress.json
 FAILURE = "failure.txt"
 
 
@@ -18,22 +20,49 @@ class Progress(Part):
     """How far a run got: its newest checkpoint.
 
     Attributes:
+        format: narrows 0.1 wrote no number, and no checksums.
+        run: digest of what the run is, so that no other run's checkpoint is taken for its own.
         step: engine steps done.
         wall_seconds: spent on them, in all sessions [s].
         finished: whether the run is at its end.
         checkpoint: name of the newest checkpoint's file; none before the first.
+        checksums: of the checkpoint and of the outputs at its step, by file.
     """
 
+    format: Literal[1, 2] = 1
+    run: str | None = None
     step: Annotated[int, Field(ge=0, lt=2**63)] = 0
     wall_seconds: Annotated[float, Field(ge=0)] = 0.0
     finished: bool = False
     checkpoint: str | None = None
+    checksums: dict[FileName, Checksum] = Field(default_factory=dict)
 
     @model_validator(mode="after")
     def _is_ours(self) -> Self:
-        if self.checkpoint is not None and not is_checkpoint(self.checkpoint, self.step):
+        if self.checkpoint is None:
+            if self.step > 0:
+                raise ValueError(f"checkpoint: none of step {self.step}")
+        elif not is_checkpoint(self.checkpoint, self.step):
             raise ValueError(f"checkpoint {self.checkpoint!r}: not that of step {self.step}")
+        if self.format > 1:
+            if self.run is None:
+                raise ValueError("run: missing")
+            if self.checkpoint is not None and self.checkpoint not in self.checksums:
+                raise ValueError(f"checksums: none of {self.checkpoint}")
         return self
+
+    def require(self, directory: Path, file: str) -> Path:
+        """The path of a file of the run, once it begins with what it held at the checkpoint.
+
+        A checkpoint, or an output of a finished run, must hold no more than that.
+
+        Raises:
+            RunDirectoryError: when it does not.
+        """
+        path = directory / file
+        if file in self.checksums:
+            self.checksums[file].require(path, whole=self.finished or file == self.checkpoint)
+        return path
 
 
 def is_begun(directory: Path) -> bool:

@@ -13,4 +13,14 @@ def replace_text(path: Path, text: str) -> None:
     """Write a text file and put it in the place of the old one."""
     draft = draft_of(path)
     draft.write_text(text, encoding="utf-8", newline="")
+    reach_disk(draft)
     os.replace(draft, path)
+
+
+def reach_disk(path: Path) -> None:
+    """Wait until the disk holds a file, so that a power cut leaves what later ones tell of it."""
+    descriptor = os.open(path, os.O_RDONLY)
+    try:
+        os.fsync(descriptor)
+    finally:
+        os.close(descriptor)

@@ -51,6 +51,16 @@ def start_session(
         from srd_driver.lammps_session import LammpsSession
 
         return LammpsSession(scene, engine, directory, progress, checkpoint_steps, comm)
-    module, _, name = SESSIONS[engine].partition(":")
-    session: Session = getattr(importlib.import_module(module), name)(scene, directory, progress)
+    session: Session = _session_class(engine)(scene, directory, progress)
     return session
+
+
+def checkpoint_suffix(engine: str) -> str:
+    """How the names of an engine's checkpoints end."""
+    return str(_session_class(engine).suffix)
+
+
+def _session_class(engine: str) -> Any:
+    known = "srd_driver.lammps_session:LammpsSession" if has_deck(engine) else SESSIONS[engine]
+    module, _, name = known.partition(":")
+    return getattr(importlib.import_module(module), name)

@@ -1,6 +1,7 @@
 """LAMMPS, in this process, running the deck of a run directory."""
 
 import contextlib
+import ctypes
 from collections.abc import Iterator
 from pathlib import Path
 from typing import Any
@@ -9,9 +10,13 @@ from lammps_inputs import Scene
 from lammps_inputs.deck import script
 from lammps_inputs.engines.engine import Start
 from lammps_inputs.engines.lammps import particle_group
+from run_files.cutting import cut_output
 from run_files.progress import Progress
 from srd_driver.errors import RunError
+from srd_driver.parallel import agree
 from srd_driver.session import Array
+
+LAST_WORD = b"LammpS RestartT\0"  # of a restart file
 
 
 class LammpsSession:
@@ -52,6 +57,10 @@ class LammpsSession:
         with self._errors():
             self._lammps.command("log log.lammps append")
             self._lammps.commands_list(setup)
+        if progress.checkpoint and comm.rank == 0:
+            ctypes.CDLL(None).fflush(None)  # titles that LAMMPS wrote again, to be cut off
+            for output in scene.system.outputs:
+                cut_output(directory / output.file, output.kind, progress.step)
 
     @property
     def colloid_positions(self) -> Array:
@@ -76,6 +85,7 @@ class LammpsSession:
             with self._errors():
                 self._lammps.command(f"write_restart {file}")
             self._set_up = False  # write_restart moves atoms between processes
+        agree(self._comm, lambda: _require_whole(self._directory / file))
 
     def close(self) -> None:
         self._lammps.close()
@@ -106,3 +116,11 @@ class LammpsSession:
 
     def _message(self, error: Exception) -> str:
         return f"LAMMPS: {str(error).strip()} (log: {self._directory / 'log.lammps'})"
+
+
+def _require_whole(file: Path) -> None:
+    """LAMMPS does not look whether the disk took what it wrote; its last word tells."""
+    with file.open("rb") as content:
+        content.seek(max(0, file.stat().st_size - len(LAST_WORD)))
+        if content.read() != LAST_WORD:
+            raise RunError(f"{file.name} was not written to its end")

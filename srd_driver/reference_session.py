@@ -23,14 +23,13 @@ class ReferenceSession:
             self._engine = ReferenceEngine.load(scene, directory / progress.checkpoint)
         else:
             self._engine = ReferenceEngine(scene)
+            for name, title in _TITLES.items():
+                (directory / name).write_text(title, encoding="utf-8")
         self.step = progress.step
         self._system, self._clock = scene.system, scene.system.clock
         self._box = scene.system.box
         self._width = self._box.sizes[1]
         self._bins = 2 * round(self._width)
-        for name, title in _TITLES.items():
-            if not (directory / name).exists():
-                (directory / name).write_text(title, encoding="utf-8")
         self._write_frame()
 
     @property

@@ -3,7 +3,9 @@
 import json
 import os
 import shlex
+import shutil
 import sys
+from collections.abc import Iterable
 from importlib.metadata import PackageNotFoundError, version
 from pathlib import Path
 from typing import Any, TextIO
@@ -11,17 +13,27 @@ from typing import Any, TextIO
 from lammps_inputs import Scene
 from lammps_inputs.deck import check_engine, has_deck, script, write_deck
 from lammps_inputs.manifest import manifest
+from run_files.checksums import Checksum
 from run_files.cutting import cut_output
+from run_files.manifest import CHANGEABLE, SCENE, read_manifest
 from run_files.manifest import NAME as MANIFEST
-from run_files.manifest import read_manifest
-from run_files.progress import FAILURE, Progress, is_begun, read_progress, write_progress
-from run_files.reading import read_toml
-from run_files.writing import replace_text
+from run_files.names import is_checkpoint
+from run_files.progress import (
+    FAILURE,
+    FORMAT,
+    Progress,
+    is_begun,
+    read_progress,
+    write_progress,
+)
+from run_files.progress import NAME as PROGRESS
+from run_files.reading import read_toml, refuse
+from run_files.writing import draft_of, replace_text
 from srd_driver import run_lock
+from srd_driver.engines import checkpoint_suffix
 from srd_driver.errors import RunError
 
-CHANGEABLE = {"duration"}  # a run may be resumed to last longer
-SCENE = "scene.toml"
+MAKING = ".making"  # a folder for what the engine makes before a run begins
 
 
 def take(directory: Path, resume: bool) -> TextIO:
@@ -31,16 +43,12 @@ def take(directory: Path, resume: bool) -> TextIO:
         RunError: when another process runs there, when it is not empty and not to be resumed, or
             holds no run, or cannot be written.
     """
+    require = _require_run if resume else _require_empty
     try:
         directory.mkdir(parents=True, exist_ok=True)
-        if not resume:
-            _require_empty(directory)
-        elif any(directory.iterdir()) and not (is_begun(directory) or is_half_made(directory)):
-            stored_fields(directory)
-            raise RunError(f"{directory} is not a run directory: it has no progress.json")
+        require(directory)
         held = run_lock.lock(directory)
-        if not resume:
-            _require_empty(directory)  # another process may have been quicker
+        require(directory)  # another process may have been quicker
     except OSError as error:
         raise RunError(f"cannot write {directory}: {error.strerror or error}") from None
     return held
@@ -53,21 +61,55 @@ def _require_empty(directory: Path) -> None:
         )
 
 
+def _require_run(directory: Path) -> None:
+    if any(directory.iterdir()) and not (is_begun(directory) or is_half_made(directory)):
+        stored_fields(directory)
+        raise RunError(f"{directory} is not a run directory: it has no {PROGRESS}")
+
+
 def create(scene: Scene, engine: str, directory: Path, ranks: int) -> Progress:
-    """Write the run directory of a new run; over one that a kill left half made.
+    """Write the run directory of a new run, or the rest of one that a kill left half made.
+
+    What the run is comes first and whole, so that half a directory tells it. What the engine makes
+    is put together in a folder of its own: nothing else may be there.
 
     Raises:
         SceneError: when the engine cannot run the scene.
-        RunError: when the directory cannot be written.
+        RunError: when the directory cannot be written, is that of another scene or engine, or holds
+            what may be data.
+        RunDirectoryError: when what there is of it is damaged.
     """
+    check_engine(scene, engine)
+    if tells_scene(directory):
+        refuse_another_scene(scene, engine, directory)
+    making = directory / MAKING
+    shutil.rmtree(making, ignore_errors=True)
     try:
-        check_engine(scene, engine)
-        write_scene(scene, engine, directory, ranks)
+        making.mkdir()
         if has_deck(engine):
-            write_deck(scene, directory, engine)
-        return write_progress(directory, Progress())
+            write_deck(scene, making, engine)
+        made = sorted(path.name for path in making.iterdir())
+        _require_nothing_but(directory, made)
+        write_scene(scene, engine, directory, ranks)
+        for name in made:
+            os.replace(making / name, directory / name)
+        return write_progress(directory, Progress(format=FORMAT, run=identity(scene, engine)))
     except OSError as error:
         raise RunError(f"cannot write {directory}: {error.strerror or error}") from None
+    finally:
+        shutil.rmtree(making, ignore_errors=True)
+
+
+def _require_nothing_but(directory: Path, made: Iterable[str]) -> None:
+    replaced = [directory / name for name in (SCENE, MANIFEST, PROGRESS)]
+    known = {run_lock.LOCK, MAKING, *made}
+    known |= {each.name for path in replaced for each in (path, draft_of(path))}
+    others = sorted(path.name for path in directory.iterdir() if path.name not in known)
+    if others:
+        raise RunError(
+            f"{directory} has no {PROGRESS} but {', '.join(others)}: nothing is begun over what "
+            f"may be data; put {PROGRESS} back, or choose another directory"
+        )
 
 
 def reopen(scene: Scene, engine: str, directory: Path, ranks: int) -> Progress:
@@ -79,11 +121,20 @@ def reopen(scene: Scene, engine: str, directory: Path, ranks: int) -> Progress:
     """
     refuse_another_scene(scene, engine, directory)
     progress = read_progress(directory)
-    (directory / FAILURE).unlink(missing_ok=True)
-    if progress.checkpoint and not (directory / progress.checkpoint).exists():
-        raise RunError(f"{directory}: its checkpoint {progress.checkpoint} is missing")
+    if progress.checkpoint:
+        suffix = checkpoint_suffix(engine)
+        if not is_checkpoint(progress.checkpoint, progress.step, suffix):
+            refuse(directory / PROGRESS, f"checkpoint {progress.checkpoint}: not one of {engine}")
+        if not (directory / progress.checkpoint).is_file():
+            raise RunError(f"{directory}: its checkpoint {progress.checkpoint} is missing")
+    if progress.run not in (None, identity(scene, engine)):
+        refuse(directory / PROGRESS, "of another run: its checkpoint is not taken for this one's")
     if progress.step < scene.system.clock.total_steps:
+        for file in progress.checksums:
+            progress.require(directory, file)
+        progress = progress.model_copy(update={"finished": False})  # it may be made longer
         try:
+            (directory / FAILURE).unlink(missing_ok=True)
             write_progress(directory, progress)  # drops a checkpoint that a kill left half written
             for output in scene.system.outputs:
                 cut_output(directory / output.file, output.kind, progress.step)
@@ -96,20 +147,30 @@ def reopen(scene: Scene, engine: str, directory: Path, ranks: int) -> Progress:
 
 
 def is_half_made(directory: Path) -> bool:
-    """Whether a run was being made in the directory when it was killed."""
+    """Whether a run was being made in the directory when it was killed, or lost its progress."""
     return (directory / run_lock.LOCK).is_file() and not is_begun(directory)
+
+
+def tells_scene(directory: Path) -> bool:
+    """Whether the directory belongs to a scene and engine, begun or not."""
+    return (directory / MANIFEST).is_file()
 
 
 def stored_fields(directory: Path) -> dict[str, Any]:
     """The fields of the scene in a run directory, the scene's name as `scene`.
 
+    From its scene file; while the directory is being made there may only be the manifest.
+
     Raises:
         RunError: when the directory holds no run.
         RunDirectoryError: when the file is damaged.
     """
-    if not (directory / SCENE).is_file():
-        raise RunError(f"{directory} is not a run directory: it has no {SCENE}")
-    return read_toml(directory / SCENE)
+    if (directory / SCENE).is_file():
+        return read_toml(directory / SCENE)
+    if tells_scene(directory):
+        told = read_manifest(directory)
+        return {"scene": told.scene, **told.fields}
+    raise RunError(f"{directory} is not a run directory: it has no {SCENE}")
 
 
 def newest_step(directory: Path) -> int:
@@ -135,6 +196,13 @@ def _last_label(path: Path) -> int:
     return int(labels[-1]) if labels and labels[-1].isdigit() else 0
 
 
+def identity(scene: Scene, engine: str) -> str:
+    """A digest of all that makes a run the run it is: scene, seed and engine."""
+    fields = scene.model_dump(mode="json", exclude=CHANGEABLE)
+    content = {"scene": scene.name, "engine": engine, "fields": fields}
+    return Checksum.of_text(json.dumps(content, sort_keys=True)).digest
+
+
 def refuse_another_scene(scene: Scene, engine: str, directory: Path) -> None:
     """Let only the scene and engine of a run directory pass; its duration may change.
 
@@ -158,7 +226,7 @@ def refuse_another_scene(scene: Scene, engine: str, directory: Path) -> None:
 
 
 def write_scene(scene: Scene, engine: str, directory: Path, ranks: int = 1) -> None:
-    """Write scene.toml and manifest.json.
+    """Write manifest.json and scene.toml.
 
     Raises:
         SceneError: when the engine cannot run the scene.
@@ -171,5 +239,5 @@ def write_scene(scene: Scene, engine: str, directory: Path, ranks: int = 1) -> N
             continue
     command = shlex.join([Path(sys.argv[0]).name, *sys.argv[1:]])
     content = manifest(scene, engine) | {"versions": versions, "command": command, "ranks": ranks}
-    replace_text(directory / SCENE, scene.toml())
     replace_text(directory / MANIFEST, json.dumps(content, indent=2) + "\n")
+    replace_text(directory / SCENE, scene.toml())

@@ -11,8 +11,10 @@ from typing import Any, Self, TextIO
 
 from lammps_inputs import Scene
 from lammps_inputs.engines import DEFAULT
+from run_files.checksums import Checksum, GrowingFile
 from run_files.names import checkpoint_name
-from run_files.progress import Progress, is_begun, write_failure, write_progress
+from run_files.progress import FORMAT, Progress, is_begun, write_failure, write_progress
+from run_files.writing import reach_disk
 from srd_driver import resume as run_directory
 from srd_driver.engines import require_engine, start_session
 from srd_driver.errors import RunError
@@ -68,6 +70,10 @@ class Simulation:
         except BaseException:
             self.close()
             raise
+        self._outputs = {
+            output.file: GrowingFile(self.directory / output.file)
+            for output in scene.system.outputs
+        }
         interval = self._clock.sample_steps * self._clock.time_step
         samples = max(1, round(checkpoint_interval / interval))
         self._checkpoint_steps = samples * self._clock.sample_steps
@@ -169,10 +175,25 @@ class Simulation:
             session.save(name)
         wall_seconds = self._progress.wall_seconds + clock.perf_counter() - self._began
         self._began = clock.perf_counter()
+        with self._way_on():
+            self._progress = agree(self._comm, lambda: self._record(name, wall_seconds))
+
+    def _record(self, checkpoint: str, wall_seconds: float) -> Progress:
+        """Leave word of a checkpoint that is written whole, and of what the outputs hold by now."""
+        written = {file: output.checksum() for file, output in self._outputs.items()}
+        written[checkpoint] = Checksum.of_file(self.directory / checkpoint)
+        for file in written:
+            reach_disk(self.directory / file)
         progress = Progress(
-            step=self.step, wall_seconds=wall_seconds, finished=self.finished, checkpoint=name
+            format=FORMAT,
+            run=run_directory.identity(self.scene, self.engine),
+            step=self.step,
+            wall_seconds=wall_seconds,
+            finished=self.finished,
+            checkpoint=checkpoint,
+            checksums=written,
         )
-        self._progress = agree(self._comm, lambda: write_progress(self.directory, progress))
+        return write_progress(self.directory, progress)
 
     def close(self) -> None:
         """Release the engine, and the run directory if it was a temporary one."""

@@ -15,7 +15,7 @@ from pathlib import Path
 from lammps_inputs import Scene
 from run_files.progress import is_begun, read_progress, write_failure
 from srd_driver import worker
-from srd_driver.resume import newest_step, refuse_another_scene
+from srd_driver.resume import newest_step, refuse_another_scene, tells_scene
 from srd_driver.run_lock import is_locked
 
 POLL_SECONDS = 0.2
@@ -59,9 +59,10 @@ def is_finished(run: Run) -> bool:
     Raises:
         RunError: when the directory holds another scene or engine.
     """
+    if tells_scene(run.folder):
+        refuse_another_scene(run.scene, run.engine, run.folder)
     if not is_begun(run.folder):
         return False
-    refuse_another_scene(run.scene, run.engine, run.folder)
     return read_progress(run.folder).step >= run.scene.system.clock.total_steps
 
 

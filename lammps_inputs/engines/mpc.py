@@ -13,9 +13,9 @@ from lammps_inputs.engines.force_coupling import force_problems
 from lammps_inputs.initial_state import InitialState
 from lammps_inputs.potentials.integrated_wall import IntegratedWall
 from lammps_inputs.potentials.repulsive_mie import RepulsiveMie
-from lammps_inputs.system import FLUID, Drive, Solvent, System, VelocityVerlet
+from lammps_inputs.system import FLUID, Drive, Solvent, Species, System, VelocityVerlet
 
-SKIN = 0.5  # of the neighbour list [a0]
+SKIN = 0.5  # least of the neighbour list [a0]
 
 
 class Mpc(LammpsEngine):
@@ -44,13 +44,16 @@ class Mpc(LammpsEngine):
         ghosts = _ghost_cutoff(system)
         if not system.particle_interactions():
             yield "pair_style none"
+            if system.species:
+                yield from _lists_at_collisions(system)
             yield f"comm_modify cutoff {max(1.0, ghosts)!r}"
             return
         yield from lammps.pairs(system)
         yield f"pair_modify {system.particle_interactions()[0].potential.pair_modify}"
-        yield f"neighbor {SKIN!r} bin"
-        yield "neigh_modify delay 0 every 1 check yes"
-        if ghosts > SKIN + max(i.potential.cutoff for i in system.particle_interactions()):
+        skin = max(SKIN, 2 * max(_travel(system, each) for each in system.species))
+        yield f"neighbor {skin:.6g} bin"
+        yield from _lists_at_collisions(system)
+        if ghosts > skin + max(i.potential.cutoff for i in system.particle_interactions()):
             yield f"comm_modify cutoff {ghosts:.6g} # the fluid sees {_group(system)} so far"
 
     def motion(self, system: System) -> Iterator[str]:
@@ -130,18 +133,31 @@ def _group(system: System) -> str:
     return lammps.particle_group(system)
 
 
+def _lists_at_collisions(system: System) -> Iterator[str]:
+    """At no other step: LAMMPS would do it at those of checkpoints too, and these would show."""
+    yield "# when lists are built and places wrapped shows in last digits: at each collision"
+    yield f"neigh_modify delay 0 every {system.clock.steps_per_collision} check no"
+
+
+def _travel(system: System, species: Species) -> float:
+    """How far a particle moves in a collision interval, at most: else fix mpc stops [a0].
+
+    Its speed: a drift of at most 1, 7 thermal speeds, and 3 that it may gain.
+    """
+    return _fluid(system).collision_time * (1 + 10 / math.sqrt(species.mass))
+
+
 def _ghost_cutoff(system: System) -> float:
     """How far from its cells the fluid has to see species: what fix mpc asks for [a0].
 
     1.5 cells, the range of the force, and the flights of one collision interval: 7 thermal speeds
-    of the fluid, and 3 times the fastest particle's: a drift of at most 1, 7 thermal speeds of its
-    own, and 3 that it may gain. 0 where no species interacts with the fluid.
+    of the fluid, and 3 times the fastest particle's. 0 where no species interacts with the fluid.
     """
     fluid = system.fluid_interactions()
-    time = _fluid(system).collision_time
+    flight = 7 * _fluid(system).collision_time
     return max(
         (
-            1.5 + fluid[each.name].cutoff + time * (7 + 3 * (1 + 10 / math.sqrt(each.mass)))
+            1.5 + fluid[each.name].cutoff + flight + 3 * _travel(system, each)
             for each in system.species
             if each.name in fluid
         ),

@@ -34,27 +34,58 @@ inline Pack<3> pack(double x, double y, double z)
   return Pack<3>{x, y, z, 0};
 }
 
+// Of the particles of a cell: number of fluid particles, of mass 1; momentum and squares of all.
 template <int D> struct CellSum {
   Pack<D> momentum{};
-  Pack<2> squares_and_count{};    // of the velocities
+  Pack<2> squares_and_count{};    // of the velocities, weighted by mass
 
   double count() const { return squares_and_count[1]; }
+};
 
-  Vector<D> mean() const
+// What is in a cell beside fluid.
+struct Guests {
+  double number = 0, mass = 0;
+};
+
+template <int D> struct CellSums {
+  Array<CellSum<D>> of;
+  Array<Guests> guests;    // of each cell, or empty
+
+  double number(int cell) const
   {
+    return guests.empty() ? of[cell].count() : of[cell].count() + guests[cell].number;
+  }
+
+  double mass(int cell) const
+  {
+    return guests.empty() ? of[cell].count() : of[cell].count() + guests[cell].mass;
+  }
+
+  Vector<D> mean(int cell) const
+  {
+    const double mass = this->mass(cell);
     Vector<D> mean{};
-    if (count() > 0)
-      for (int a = 0; a < D; ++a) mean[a] = momentum[a] / count();
+    if (mass > 0)
+      for (int a = 0; a < D; ++a) mean[a] = of[cell].momentum[a] / mass;
     return mean;
   }
 
   // Kinetic energy of the motion relative to the mean.
-  double relative_energy() const
+  double relative_energy(int cell) const
   {
-    if (count() < 2) return 0;
+    if (number(cell) < 2) return 0;
     double of_mean = 0;
-    for (int a = 0; a < D; ++a) of_mean += momentum[a] * momentum[a];
-    return 0.5 * std::max(squares_and_count[0] - of_mean / count(), 0.0);
+    for (int a = 0; a < D; ++a) of_mean += of[cell].momentum[a] * of[cell].momentum[a];
+    return 0.5 * std::max(of[cell].squares_and_count[0] - of_mean / mass(cell), 0.0);
+  }
+
+  // Add a guest.
+  void add(int cell, const Vector<D> &v, double mass)
+  {
+    for (int a = 0; a < D; ++a) of[cell].momentum[a] += mass * v[a];
+    of[cell].squares_and_count[0] += mass * square<D>(v);
+    guests[cell].number += 1;
+    guests[cell].mass += mass;
   }
 };
 

@@ -1,50 +1,99 @@
-// What a coupling of colloids and fluid is to the solver.
+// What a coupling of colloids and fluid is to the solver and its host.
 //
-// An interval is the time between two collisions. At its beginning the coupling takes the particles
-// that it will move itself, at every MD step; all others fly free through the whole interval at
-// once. At its end it gives them back. Colloids may take part in the collision themselves; what they
-// gain there is a force on them in the MD step after it.
+// An interval is the time between two collisions. A coupling acts in one or more of its phases:
+//
+//   at every MD step    at the interval's beginning it takes the particles that it will move itself;
+//                       all others fly free through the whole interval at once. At its end it gives
+//                       them back (force_coupling.h)
+//   after the flight    particles that may have met a colloid on their way are held back, and taken
+//                       from where they met it on another way (reflection_coupling.h)
+//   in the collision    colloids are particles of their cells (cell_coupling.h)
+//
+// What it does to colloids is forces and torques in the first, impulses of both in the others.
 
 #pragma once
 
 #include "collision.h"
+#include "processes.h"
 
 namespace mpc {
 
 // A colloid, or an image of one, that this process sees.
 template <int D> struct Colloid {
   double id;
+  int type;
   Vector<D> x, v;
-  double mass;
-  double epsilon, sigma;    // of its interaction with the fluid
+  Spin<D> spin;
+  double mass, inertia;
+};
+
+// A force and a torque, or their impulses.
+template <int D> struct Push {
+  Vector<D> linear{};
+  Spin<D> angular{};
+};
+
+// A particle on its way through an interval.
+template <int D> struct Flight : Particle<D> {
+  double flown;       // time since it was last at rest on a surface, or the interval
+  double contacts;    // with colloids
 };
 
 template <int D> class Coupling {
  public:
+  using Colloids = std::vector<Colloid<D>>;
+
   virtual ~Coupling() = default;
 
-  // Farthest that a colloid is felt: how far around its own cells a process must see colloids.
-  virtual double reach(double largest_sigma) const = 0;
+  // Whether the fluid feels colloids of this type, and how far around them none is created.
+  virtual bool feels(int type) const = 0;
+  virtual double room(int /*type*/) const { return 0; }
+
+  // Whether a process must see images of colloids, and how far around its own cells.
+  virtual bool sees_images() const { return true; }
+  virtual double reach() const { return 0; }
 
   // Colloids as they stand; none becomes faster than the speed given before the interval ends.
-  virtual void begin(const Grid<D> &, const std::vector<Colloid<D>> &, double speed) = 0;
+  virtual void begin(const Grid<D> &, const Colloids &, double /*speed*/) {}
 
-  // Take from the particles begin ... end - 1; their indices join taken().
-  virtual void take(const Fluid<D> &, int begin, int end) = 0;
-  virtual const std::vector<int> &taken() const = 0;
-  virtual void ready() = 0;
+  // At every MD step. Take from the particles begin ... end - 1; their indices join taken().
+  virtual bool every_step() const { return false; }
+  virtual void take(const Fluid<D> &, int /*begin*/, int /*end*/) {}
+  const std::vector<int> &taken() const { return taken_; }
+  virtual void ready() {}
 
   // Velocity Verlet of what was taken: positions; then forces, also on the colloids; then
   // velocities.
-  virtual void drift(double time) = 0;
-  virtual void forces(const std::vector<Colloid<D>> &, std::vector<Vector<D>> &on_colloids) = 0;
-  virtual void kick(double time) = 0;
+  virtual void drift(double /*time*/) {}
+  virtual void forces(const Colloids &, std::vector<Push<D>> & /*on_colloids*/) {}
+  virtual void kick(double /*time*/) {}
+  virtual void give_back(Fluid<D> &) {}
 
-  virtual void give_back(Fluid<D> &) = 0;
+  // After the flight. The grid of the next collision; for each of its cells, the square of the speed
+  // from which particles are candidates; and which of the candidates are held back.
+  virtual bool after_flight() const { return false; }
+  virtual const std::vector<double> &hold(const Grid<D> &) { return slowest_; }
+  virtual bool holds(const Fluid<D> &, int /*index*/, int /*cell*/) const { return false; }
 
-  // The collision, in this process's cells: join their sums, then do as their turns say.
-  virtual void join(const Grid<D> &, const std::vector<Colloid<D>> &, Array<CellSum<D>> &) {}
-  virtual void turn(const Array<Turn<D>> &) {}
+  // Colloids as they are now; then all particles that were held, with their cell; then, when all
+  // processes know of all of them, again for each, until none touches a colloid any more.
+  virtual void meet(const Colloids &, const CounterRandom &) {}
+  virtual void announce(const Flight<D> &, int /*cell*/) {}
+  virtual void decide(Processes &) {}
+  virtual bool reflect(Flight<D> &, int /*cell*/) { return false; }
+
+  // In the collision, in this process's cells: join their sums, then do as their turns say.
+  virtual bool in_collision() const { return false; }
+  virtual void join(const Grid<D> &, const Colloids &, CellSums<D> &, Processes &) {}
+  virtual void turn(const Array<Turn<D>> &, Processes &) {}
+
+  // On each of the colloids of the last meet or join; an image's is its own part of the whole.
+  const std::vector<Push<D>> &impulses() const { return impulses_; }
+
+ protected:
+  std::vector<int> taken_;
+  std::vector<double> slowest_;
+  std::vector<Push<D>> impulses_;
 };
 
 }    // namespace mpc

@@ -10,18 +10,39 @@
 #include "streaming.h"
 
 #include <cstdio>
+#include <map>
 
 namespace mpc {
 
 template <int D> class ForceCoupling : public Coupling<D> {
  public:
-  ForceCoupling(double interval, double temperature, const Vector<D> &field,
-                const Walls<D> *walls)
-    : near_(interval, temperature, field, walls), field_(field), walls_(walls)
+  struct Interaction {
+    double epsilon, sigma;
+  };
+  using Interactions = std::map<int, Interaction>;    // by colloid type
+
+  ForceCoupling(Interactions interactions, double interval, double temperature,
+                const Vector<D> &field, const Walls<D> *walls)
+    : interactions_(std::move(interactions)),
+      near_(interval, temperature, field, walls,
+            [this](int type) { return cutoff(interactions_.at(type).sigma); }),
+      field_(field), walls_(walls)
   {
   }
+  ForceCoupling(const ForceCoupling &) = delete;    // what is near knows this one
 
-  double reach(double largest_sigma) const override { return near_.reach(largest_sigma); }
+  bool feels(int type) const override { return interactions_.count(type) > 0; }
+  double room(int type) const override { return interactions_.at(type).sigma; }
+
+  double reach() const override
+  {
+    double reach = 0;
+    for (const auto &[type, interaction] : interactions_)
+      reach = std::max(reach, near_.reach(cutoff(interaction.sigma)));
+    return reach;
+  }
+
+  bool every_step() const override { return true; }
 
   void begin(const Grid<D> &grid, const std::vector<Colloid<D>> &colloids, double speed) override
   {
@@ -35,8 +56,6 @@ template <int D> class ForceCoupling : public Coupling<D> {
     const auto &candidates = near_.candidates();
     for (auto k = taken_.size(); k < candidates.size(); ++k) taken_.push_back(candidates[k].index);
   }
-
-  const std::vector<int> &taken() const override { return taken_; }
 
   // Sort what was taken by colloid, and find the forces on it.
   void ready() override
@@ -68,7 +87,10 @@ template <int D> class ForceCoupling : public Coupling<D> {
     others_ = near_.others();
     for (auto &pair : others_) pair.particle = place_[pair.particle];
 
-    std::vector<Vector<D>> unused(colloids);
+    of_colloid_.clear();
+    for (const auto &colloid : near_.colloids())
+      of_colloid_.push_back(interactions_.at(colloid.type));
+    std::vector<Push<D>> unused(colloids);
     forces(near_.colloids(), unused);
     std::swap(old_, new_);
     pair_fast();
@@ -90,22 +112,23 @@ template <int D> class ForceCoupling : public Coupling<D> {
     }
   }
 
-  void forces(const std::vector<Colloid<D>> &colloids, std::vector<Vector<D>> &on_colloids) override
+  void forces(const std::vector<Colloid<D>> &colloids, std::vector<Push<D>> &on_colloids) override
   {
     for (int c = 0; c < static_cast<int>(colloids.size()); ++c) {
       check_allowance(colloids[c], near_.colloids()[c]);
-      on_colloids[c] = force_of(colloids[c], start_[c], start_[c + 1]);
+      on_colloids[c].linear = force_of(colloids[c], of_colloid_[c], start_[c], start_[c + 1]);
     }
     for (const auto &pair : others_) {
       const auto &colloid = colloids[pair.colloid];
+      const auto &interaction = of_colloid_[pair.colloid];
       Vector<D> separation;
       for (int a = 0; a < D; ++a) separation[a] = x_[a][pair.particle] - colloid.x[a];
       const double r2 = square<D>(separation);
-      if (!(r2 > square_of(CORE * colloid.sigma))) fault_in_core(pair.particle, colloid, r2);
-      const double strength = force_over_distance(colloid, r2);
+      if (!(r2 > square_of(CORE * interaction.sigma))) fault_in_core(pair.particle, colloid, r2);
+      const double strength = force_over_distance(interaction, r2);
       for (int a = 0; a < D; ++a) {
         new_[a][pair.particle] += strength * separation[a];
-        on_colloids[pair.colloid][a] -= strength * separation[a];
+        on_colloids[pair.colloid].linear[a] -= strength * separation[a];
       }
     }
   }
@@ -140,13 +163,15 @@ template <int D> class ForceCoupling : public Coupling<D> {
 
   static double square_of(double a) { return a * a; }
 
-  static double force_over_distance(const Colloid<D> &colloid, double r2)
+  static double cutoff(double sigma) { return 1.122462048309373 * sigma; }    // 2^(1/6)
+
+  static double force_over_distance(const Interaction &of, double r2)
   {
     const double inverse = 1 / r2;
-    const double ratio = colloid.sigma * colloid.sigma * inverse;
+    const double ratio = of.sigma * of.sigma * inverse;
     const double u = ratio * ratio * ratio;
-    const double strength = 24 * colloid.epsilon * (2 * u * u - u) * inverse;
-    return r2 < square_of(NearFluid<D>::cutoff(colloid.sigma)) ? strength : 0.0;
+    const double strength = 24 * of.epsilon * (2 * u * u - u) * inverse;
+    return r2 < square_of(cutoff(of.sigma)) ? strength : 0.0;
   }
 
   // Pair the particles that have become fast with all colloids.
@@ -175,9 +200,10 @@ template <int D> class ForceCoupling : public Coupling<D> {
   }
 
   // Forces between a colloid and its own particles first ... last - 1; that on the colloid.
-  Vector<D> force_of(const Colloid<D> &colloid, int first, int last)
+  Vector<D> force_of(const Colloid<D> &colloid, const Interaction &interaction, int first, int last)
   {
-    const auto of = colloid;    // copies: for all the compiler knows, the loop could write there
+    const auto of = interaction;    // copies: for all the compiler knows, the loop could write there
+    const auto centre = colloid.x;
     const auto field = field_;
     const double core = square_of(CORE * of.sigma);
     int deep = 0;
@@ -193,7 +219,7 @@ template <int D> class ForceCoupling : public Coupling<D> {
       Vector<D> separation;
       double r2 = 0;
       for (int a = 0; a < D; ++a) {
-        separation[a] = x[a][k] - of.x[a];
+        separation[a] = x[a][k] - centre[a];
         r2 += separation[a] * separation[a];
       }
       const double strength = force_over_distance(of, r2);
@@ -203,7 +229,7 @@ template <int D> class ForceCoupling : public Coupling<D> {
         after[a][k] = strength * separation[a] + field[a];
       }
     }
-    if (deep > 0) find_in_core(colloid, first, last);
+    if (deep > 0) find_in_core(colloid, of.sigma, first, last);
 
     Vector<D> total;
     for (int a = 0; a < D; ++a) {
@@ -231,12 +257,12 @@ template <int D> class ForceCoupling : public Coupling<D> {
     throw Fault(text);
   }
 
-  void find_in_core(const Colloid<D> &colloid, int first, int last) const
+  void find_in_core(const Colloid<D> &colloid, double sigma, int first, int last) const
   {
     for (int k = first; k < last; ++k) {
       double r2 = 0;
       for (int a = 0; a < D; ++a) r2 += square_of(x_[a][k] - colloid.x[a]);
-      if (!(r2 > square_of(CORE * colloid.sigma))) fault_in_core(k, colloid, r2);
+      if (!(r2 > square_of(CORE * sigma))) fault_in_core(k, colloid, r2);
     }
   }
 
@@ -250,12 +276,16 @@ template <int D> class ForceCoupling : public Coupling<D> {
     throw Fault(text);
   }
 
+  using Coupling<D>::taken_;
+
+  Interactions interactions_;
   NearFluid<D> near_;
   Vector<D> field_;
   const Walls<D> *walls_;
+  std::vector<Interaction> of_colloid_;    // seen as the interval began
 
   // taken particles, those of one colloid behind each other: colloid c has start_[c] ...
-  std::vector<int> taken_, start_, place_;
+  std::vector<int> start_, place_;
   std::vector<double> ids_;
   std::array<std::vector<double>, D> x_, v_, old_, new_, pull_;
   std::vector<bool> with_all_;

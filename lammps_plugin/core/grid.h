@@ -11,6 +11,31 @@ namespace mpc {
 
 template <int D> using Vector = std::array<double, D>;
 
+// Angular velocity or torque: about z in 2D.
+template <int D> using Spin = std::array<double, D == 2 ? 1 : 3>;
+
+inline Vector<2> cross(const Spin<2> &spin, const Vector<2> &arm)
+{
+  return {-spin[0] * arm[1], spin[0] * arm[0]};
+}
+
+inline Vector<3> cross(const Spin<3> &spin, const Vector<3> &arm)
+{
+  return {spin[1] * arm[2] - spin[2] * arm[1], spin[2] * arm[0] - spin[0] * arm[2],
+          spin[0] * arm[1] - spin[1] * arm[0]};
+}
+
+// Of a force at the end of an arm.
+inline Spin<2> torque(const Vector<2> &arm, const Vector<2> &force)
+{
+  return {arm[0] * force[1] - arm[1] * force[0]};
+}
+
+inline Spin<3> torque(const Vector<3> &arm, const Vector<3> &force)
+{
+  return cross(arm, force);
+}
+
 template <int D> double square(const Vector<D> &a)
 {
   double sum = 0;

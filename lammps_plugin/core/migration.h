@@ -17,16 +17,17 @@ template <int D> bool is_below(const Grid<D> &grid, int axis, int row)
   return down < up;
 }
 
-// Exchange particles axis by axis, neighbour to neighbour, until each process has its own.
-template <int D>
-void bring_home(std::vector<Particle<D>> &travelling, const Grid<D> &grid, Processes &processes)
+// Exchange particles, or records that begin with one, axis by axis, neighbour to neighbour, until
+// each process has its own. All processes call it, and each waits for all.
+template <int D, class Record>
+void bring_home(std::vector<Record> &travelling, const Grid<D> &grid, Processes &processes)
 {
-  constexpr int record = sizeof(Particle<D>) / sizeof(double);
+  constexpr int record = sizeof(Record) / sizeof(double);
   for (int a = 0; a < D; ++a) {
     bool more = processes.along(a) > 1;
     while (more) {
       std::vector<double> down, up;
-      std::vector<Particle<D>> staying;
+      std::vector<Record> staying;
       for (const auto &particle : travelling) {
         const int row = grid.row(a, particle.x[a]);
         if (grid.owns(a, row)) {
@@ -41,7 +42,7 @@ void bring_home(std::vector<Particle<D>> &travelling, const Grid<D> &grid, Proce
       const auto arrived = processes.trade(a, down, up);
       bool homeless = false;
       for (std::size_t k = 0; k < arrived.size(); k += record) {
-        travelling.push_back(*reinterpret_cast<const Particle<D> *>(&arrived[k]));
+        travelling.push_back(*reinterpret_cast<const Record *>(&arrived[k]));
         homeless |= !grid.owns(a, grid.row(a, travelling.back().x[a]));
       }
       more = processes.along(a) > 2 && processes.any(homeless);

@@ -11,9 +11,11 @@
 
 #pragma once
 
+#include "colloid_cells.h"
 #include "coupling.h"
 #include "walls.h"
 
+#include <functional>
 #include <limits>
 
 namespace mpc {
@@ -28,18 +30,19 @@ template <int D> class NearFluid {
     int particle, colloid;
   };
 
-  NearFluid(double interval, double temperature, const Vector<D> &field, const Walls<D> *walls)
+  // The cutoff of the force is a function of the colloid's type.
+  NearFluid(double interval, double temperature, const Vector<D> &field, const Walls<D> *walls,
+            std::function<double(int)> cutoff)
     : interval_(interval), thermal_speed_(std::sqrt(temperature)),
       usual_(square_of(CHECKED_SPEED * thermal_speed_)),
-      gain_(std::sqrt(square<D>(field)) * interval + (walls ? walls->gain() : 0))
+      gain_(std::sqrt(square<D>(field)) * interval + (walls ? walls->gain() : 0)),
+      cutoff_(std::move(cutoff))
   {
   }
 
-  static double cutoff(double sigma) { return 1.122462048309373 * sigma; }    // 2^(1/6)
-
-  double reach(double largest_sigma) const
+  double reach(double cutoff) const
   {
-    return cutoff(largest_sigma) + interval_ * flight_speed(PAIR_SPEED * thermal_speed_);
+    return cutoff + interval_ * flight_speed(PAIR_SPEED * thermal_speed_);
   }
 
   // Whether a particle is to be paired with all colloids.
@@ -50,20 +53,18 @@ template <int D> class NearFluid {
 
   void begin(const Grid<D> &grid, const std::vector<Colloid<D>> &colloids, double speed)
   {
-    grid_ = grid;
     colloids_ = colloids;
     allowance_ = interval_ * speed;
     candidates_.clear();
     others_.clear();
-
     ranges_.clear();
-    for (const auto &colloid : colloids)
-      ranges_.push_back({cutoff(colloid.sigma), square_of(pair_reach(colloid))});
+    cells_.begin(grid);
     for (int a = 0; a < D; ++a) turns_per_length_[a] = grid.periodic[a] ? 1 / grid.box[a] : 0.0;
-
-    head_.assign(grid.cells(), -1);
-    entries_.clear();
-    for (int c = 0; c < static_cast<int>(colloids.size()); ++c) list_cells(c);
+    for (int c = 0; c < static_cast<int>(colloids.size()); ++c) {
+      const double cutoff = cutoff_(colloids[c].type), pairing = reach(cutoff) + allowance_;
+      ranges_.push_back({cutoff, square_of(pairing)});
+      cells_.enter(c, colloids[c].x, pairing);    // at all cells with what could be paired with it
+    }
   }
 
   void take(const Fluid<D> &fluid, int begin, int end)
@@ -74,7 +75,7 @@ template <int D> class NearFluid {
       double speed = 0;
       for (int a = 0; a < D; ++a) speed += fluid.v[a][i] * fluid.v[a][i];
       listed_[listed] = i;
-      listed += (head_[fluid.cell[i]] >= 0) | is_fast(speed);
+      listed += cells_.any(fluid.cell[i]) | is_fast(speed);
     }
     for (int k = 0; k < listed; ++k) consider(fluid, listed_[k]);
   }
@@ -89,9 +90,6 @@ template <int D> class NearFluid {
   static constexpr double CHECKED_SPEED = 6.0;    // thermal speeds; e^-18 are faster
   static constexpr double PAIR_SPEED = 7.0;       // room for what one step adds to the checked
 
-  struct Entry {
-    int colloid, next;
-  };
   struct Range {
     double cutoff, square_reach;    // of the force, and of pairing squared
   };
@@ -100,52 +98,11 @@ template <int D> class NearFluid {
 
   double flight_speed(double speed) const { return speed + gain_; }
 
-  double pair_reach(const Colloid<D> &colloid) const
-  {
-    return reach(colloid.sigma) + allowance_;
-  }
-
-  // Enter a colloid at all cells from which a particle could be paired with it.
-  void list_cells(int c)
-  {
-    const auto &x = colloids_[c].x;
-    const double radius = pair_reach(colloids_[c]);
-    std::array<int, D> first, last;
-    for (int a = 0; a < D; ++a) {
-      const auto row = [&](double at) {
-        return static_cast<int>(std::floor(at / grid_.edge + grid_.shift[a]));
-      };
-      first[a] = std::max(row(x[a] - radius), grid_.lower[a]);
-      last[a] = std::min(row(x[a] + radius), grid_.upper[a] - 1);
-      if (first[a] > last[a]) return;
-    }
-    auto rows = first;
-    for (;;) {
-      double distance = 0;    // of the colloid to the cell, squared
-      int cell = 0;
-      for (int a = D - 1; a >= 0; --a) {
-        const double beyond =
-            std::abs(x[a] - grid_.centre(a, rows[a])) - 0.5 * grid_.edge * (1 + 1e-9);
-        if (beyond > 0) distance += beyond * beyond;
-        cell = cell * grid_.extent(a) + rows[a] - grid_.lower[a];
-      }
-      if (distance < radius * radius) {
-        entries_.push_back({c, head_[cell]});
-        head_[cell] = static_cast<int>(entries_.size()) - 1;
-      }
-      int a = 0;
-      while (a < D && ++rows[a] > last[a]) {
-        rows[a] = first[a];
-        ++a;
-      }
-      if (a == D) return;
-    }
-  }
-
   // Take a particle if it could come within a cutoff, and pair it. Its cell lists the images of
   // colloids that are near; a fast one meets all images, and so must itself be the one in its cell.
   void consider(const Fluid<D> &fluid, int i)
   {
+    const auto &grid = cells_.grid();
     auto particle = fluid.particle(i);
     const double square_speed = square<D>(particle.v);
     const bool fast = is_fast(square_speed);
@@ -159,7 +116,7 @@ template <int D> class NearFluid {
       double r2 = 0;
       for (int a = 0; a < D; ++a) {
         const double separation = particle.x[a] - colloids_[c].x[a];
-        r2 += square_of(fast ? separation : separation - turns(a, separation) * grid_.box[a]);
+        r2 += square_of(fast ? separation : separation - turns(a, separation) * grid.box[a]);
       }
       const auto &range = ranges_[c];
       const bool paired = r2 < range.square_reach;
@@ -177,7 +134,7 @@ template <int D> class NearFluid {
       for (int c = 0; c < static_cast<int>(colloids_.size()); ++c) meet(c);
       if (within && nearest < 0) nearest = 0;    // the coupling pairs it with the rest
     } else {
-      for (int e = head_[fluid.cell[i]]; e >= 0; e = entries_[e].next) meet(entries_[e].colloid);
+      cells_.each(fluid.cell[i], meet);
     }
     if (!within) {
       others_.resize(before);
@@ -185,7 +142,7 @@ template <int D> class NearFluid {
     }
     if (!fast)
       for (int a = 0; a < D; ++a)
-        particle.x[a] -= turns(a, particle.x[a] - colloids_[nearest].x[a]) * grid_.box[a];
+        particle.x[a] -= turns(a, particle.x[a] - colloids_[nearest].x[a]) * grid.box[a];
     candidates_.push_back({i, nearest, particle});
   }
 
@@ -197,21 +154,21 @@ template <int D> class NearFluid {
 
   void bring_into_cell(Vector<D> &x, int cell) const
   {
-    const auto rows = grid_.rows(cell);
-    for (int a = 0; a < D; ++a) x[a] -= turns(a, x[a] - grid_.centre(a, rows[a])) * grid_.box[a];
+    const auto &grid = cells_.grid();
+    const auto rows = grid.rows(cell);
+    for (int a = 0; a < D; ++a) x[a] -= turns(a, x[a] - grid.centre(a, rows[a])) * grid.box[a];
   }
 
   double interval_, thermal_speed_;
   double usual_;    // square of the checked speed
   double gain_;     // of speed in an interval, from the field and the walls
+  std::function<double(int)> cutoff_;
 
-  Grid<D> grid_{{}, {}, 1.0};            // as it was when the interval began
+  ColloidCells<D> cells_;    // as the interval began
   std::vector<Colloid<D>> colloids_;
   std::vector<Range> ranges_;            // of each colloid
   Vector<D> turns_per_length_;           // 0 across walls
   double allowance_ = 0;
-  std::vector<int> head_;                // of each cell, its list of entries; -1 for none
-  std::vector<Entry> entries_;
   std::vector<int> listed_;
   std::vector<Candidate> candidates_;
   std::vector<Pair> others_;

@@ -38,7 +38,9 @@ enum class Stream : std::uint64_t {
   Thermostat = 4,
   Shuffle = 5,
   Bath = 6,
-  Create = 7
+  Create = 7,
+  Reflection = 8,
+  Pair = 9
 };
 
 inline double uniform(std::uint64_t word)

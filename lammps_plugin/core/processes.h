@@ -2,6 +2,7 @@
 
 #pragma once
 
+#include <cstring>
 #include <vector>
 
 namespace mpc {
@@ -24,6 +25,23 @@ struct Processes {
   {
     return {};
   }
+
+  // Records of all processes on all, process by process; for the few that colloids are.
+  template <class Record> std::vector<Record> everyones(const std::vector<Record> &mine)
+  {
+    const auto *bytes = reinterpret_cast<const char *>(mine.data());
+    const auto all = gather({bytes, bytes + mine.size() * sizeof(Record)});
+    std::vector<Record> records(all.size() / sizeof(Record));
+    if (!all.empty()) std::memcpy(static_cast<void *>(records.data()), all.data(), all.size());
+    return records;
+  }
+
+  // Sum over the images of each colloid that the host sees, on all processes, in place: so many
+  // values for each.
+  virtual void sum_images(std::vector<double> & /*values*/, int /*width*/) {}
+
+ protected:
+  virtual std::vector<char> gather(const std::vector<char> &mine) { return mine; }
 };
 
 }    // namespace mpc

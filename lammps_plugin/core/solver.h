@@ -2,7 +2,8 @@
 //
 //   begin_interval   turn the velocities as the last collision said, give the coupling what is near
 //                    colloids, move all others to the end of the interval, sort into new cells
-//   end_interval     take the near ones back, exchange with other processes, collide
+//   end_interval     take the near ones back, reflect what is inside colloids, exchange with other
+//                    processes, collide
 //
 // The first is one pass over memory, in blocks that stay in the first-level cache. A collision only
 // makes the maps of the cells; turn() applies them at once when somebody wants to see velocities.
@@ -26,7 +27,7 @@ template <int D> struct Method {
   Vector<D> field;       // acceleration of the fluid
   Rotation rotation;
   bool shifted;          // whether the grid is shifted at each collision
-  std::unique_ptr<Walls<D>> walls;                   // across y, or none
+  std::unique_ptr<Walls<D>> walls;                   // or none
   std::unique_ptr<Thermostat<D>> thermostat;         // or none
   std::unique_ptr<RandomSolvent<D>> random_solvent;  // or none
   std::unique_ptr<Coupling<D>> coupling;             // or none
@@ -75,6 +76,9 @@ template <int D> class Solver {
   void redistribute(const std::array<int, D> &lower, const std::array<int, D> &upper)
   {
     if (!processes_.any(lower != grid_.lower || upper != grid_.upper)) return;
+    for (int a = 0; a < D; ++a)
+      if (processes_.any(upper[a] <= lower[a]))
+        throw Fault(std::string("too many processes along ") + "xyz"[a] + ": one has no cells");
     turn();
     for (int i = 0; i < fluid_.size(); ++i) travelling_.push_back(fluid_.particle(i));
     fluid_.clear();
@@ -94,6 +98,13 @@ template <int D> class Solver {
     Vector<D> mean = momentum();
     for (int a = 0; a < D; ++a)
       for (double &component : fluid_.v[a]) component -= mean[a] / particles_;
+  }
+
+  void add_velocity(const Vector<D> &change)
+  {
+    turn();
+    for (int a = 0; a < D; ++a)
+      for (double &component : fluid_.v[a]) component += change[a];
   }
 
   // Of all processes.
@@ -122,8 +133,10 @@ template <int D> class Solver {
     auto *coupling = method_.coupling.get();
     if (coupling) coupling->begin(grid_, colloids, colloid_speed);
     draw_shift(collisions_);
-    std::fill(sums_.begin(), sums_.end(), CellSum<D>{});
+    slowest_ = coupling && coupling->after_flight() ? coupling->hold(grid_).data() : nullptr;
+    std::fill(sums_.of.begin(), sums_.of.end(), CellSum<D>{});
     strays_.clear();
+    held_.clear();
     for (int begin = 0; begin < fluid_.size(); begin += BLOCK) {
       const int end = std::min(begin + BLOCK, fluid_.size());
       if (turning_) turn(begin, end);
@@ -134,6 +147,7 @@ template <int D> class Solver {
       if (coupling)
         for (auto k = before; k < coupling->taken().size(); ++k)
           fluid_.cell[coupling->taken()[k]] = TAKEN;
+      if (slowest_) hold(begin, end);
       sum(begin, end);
     }
     turning_ = false;
@@ -149,9 +163,10 @@ template <int D> class Solver {
         sum(i, i + 1);
       }
     }
+    if (slowest_) reflect(colloids);
     std::sort(strays_.rbegin(), strays_.rend());    // removal moves the last one: begin there
     for (int i : strays_) {
-      travelling_.push_back(fluid_.particle(i));
+      if (!slowest_) travelling_.push_back(fluid_.particle(i));
       fluid_.remove(i);
     }
     migrate();
@@ -161,7 +176,7 @@ template <int D> class Solver {
   // In bytes, on this process.
   double memory() const
   {
-    return fluid_.bytes() + sums_.capacity() * (1.0 * sizeof(CellSum<D>) + sizeof(Turn<D>)) +
+    return fluid_.bytes() + sums_.of.capacity() * (1.0 * sizeof(CellSum<D>) + sizeof(Turn<D>)) +
         tiles_.bytes();
   }
 
@@ -175,7 +190,8 @@ template <int D> class Solver {
   {
     grid_.lower = lower;
     grid_.upper = upper;
-    sums_.assign(grid_.cells(), {});
+    sums_.of.assign(grid_.cells(), {});
+    sums_.guests.clear();
     turns_.assign(grid_.cells(), {});
   }
 
@@ -279,7 +295,7 @@ template <int D> class Solver {
     constexpr int line = CACHE_LINE / sizeof(double);
     for (int i = begin; i < end; ++i) {
       if (i % line == 0) prefetch_state(i + BLOCK);    // of the next block
-      if constexpr (D == 3) prefetch(sums_, i);
+      if constexpr (D == 3) prefetch(sums_.of, i);
       int cell = fluid_.cell[i];
       if (cell < 0) {
         if (cell == TAKEN) continue;
@@ -288,9 +304,95 @@ template <int D> class Solver {
           strays_.push_back(i);
           continue;
         }
+        if (slowest_ && method_.coupling->holds(fluid_, i, cell)) {
+          held_.push_back(i);
+          continue;
+        }
       }
-      add_to(sums_[cell], i);
+      add_to(sums_.of[cell], i);
     }
+  }
+
+  double square_speed(int i) const
+  {
+    double sum = 0;
+    for (int a = 0; a < D; ++a) sum += fluid_.v[a][i] * fluid_.v[a][i];
+    return sum;
+  }
+
+  // Keep back what may have met colloids.
+  void hold(int begin, int end)
+  {
+    listed_.resize(end - begin);
+    int listed = 0;    // a list without branches: who is in it follows no pattern
+    for (int i = begin; i < end; ++i) {
+      const int cell = fluid_.cell[i];
+      listed_[listed] = i;
+      listed += (cell >= 0) & (square_speed(i) >= slowest_[cell >= 0 ? cell : 0]);
+    }
+    for (int k = 0; k < listed; ++k) {
+      const int i = listed_[k];
+      if (!method_.coupling->holds(fluid_, i, fluid_.cell[i])) continue;
+      held_.push_back(i);
+      fluid_.cell[i] = TAKEN;
+    }
+  }
+
+  // Reflect what was held, and bring it into the sums; what has come to the cells of other processes
+  // goes there, and may be reflected there.
+  void reflect(const std::vector<Colloid<D>> &colloids)
+  {
+    auto &coupling = *method_.coupling;
+    coupling.meet(colloids, {method_.seed, collisions_});
+    std::vector<Flight<D>> here, leaving;
+    for (int i : strays_) leaving.push_back({fluid_.particle(i), method_.interval, 0});
+    for (int i : held_) {
+      here.push_back({fluid_.particle(i), method_.interval, 0});
+      coupling.announce(here.back(), locate(here.back()));
+    }
+    auto arrived = leaving;
+    bring_home<D>(arrived, grid_, processes_);
+    for (auto &flight : arrived) coupling.announce(flight, locate(flight));
+    coupling.decide(processes_);
+
+    leaving.clear();
+    for (std::size_t k = 0; k < here.size(); ++k) {
+      const int i = held_[k], cell = fluid_.cell[i] = bounce(here[k]);
+      for (int a = 0; a < D; ++a) {
+        fluid_.x[a][i] = here[k].x[a];
+        fluid_.v[a][i] = here[k].v[a];
+      }
+      if (cell < 0) {
+        strays_.push_back(i);
+        leaving.push_back(here[k]);
+      } else {
+        add_to(sums_.of[cell], i);
+      }
+    }
+    for (;;) {
+      for (auto &flight : arrived)
+        (bounce(flight) < 0 ? leaving : landed_).push_back(flight);
+      if (!processes_.any(!leaving.empty())) break;
+      arrived = std::move(leaving);
+      leaving.clear();
+      bring_home<D>(arrived, grid_, processes_);
+    }
+    travelling_.assign(landed_.begin(), landed_.end());
+    landed_.clear();
+  }
+
+  // Reflect a particle until it meets no colloid; its cell, or -1 for another process's.
+  int bounce(Flight<D> &flight)
+  {
+    int cell = locate(flight);
+    while (cell >= 0 && method_.coupling->reflect(flight, cell)) cell = locate(flight);
+    return cell;
+  }
+
+  int locate(Flight<D> &flight) const
+  {
+    for (int a = 0; a < D; ++a) flight.x[a] = wrapped<D>(grid_, a, flight.x[a]);
+    return grid_.local(flight.x);
   }
 
   void add_to(CellSum<D> &sum, int i)
@@ -327,7 +429,7 @@ template <int D> class Solver {
     bring_home<D>(travelling_, grid_, processes_);
     for (const auto &particle : travelling_) {
       fluid_.append(particle, grid_.local(particle.x));
-      add_to(sums_[fluid_.cell.back()], fluid_.size() - 1);
+      add_to(sums_.of[fluid_.cell.back()], fluid_.size() - 1);
     }
     travelling_.clear();
   }
@@ -339,18 +441,19 @@ template <int D> class Solver {
     auto *solvent = method_.random_solvent.get();
     auto *thermostat = method_.thermostat.get();
     if (!solvent || !solvent->replaces_collision()) {
-      if (coupling) coupling->join(grid_, colloids, sums_);
+      const bool joining = coupling && coupling->in_collision();
+      if (joining) coupling->join(grid_, colloids, sums_, processes_);
       make_turns(random);
       turning_ = true;
       if (thermostat) {
-        Collision<D> collision{grid_, random, sums_, turns_, processes_, particles_};
+        Collision<D> collision{grid_, random, sums_, turns_, processes_};
         thermostat->scale(collision);
         if (thermostat->redraws()) {
           turn();
           thermostat->redraw(fluid_, random);
         }
       }
-      if (coupling) coupling->turn(turns_);
+      if (joining) coupling->turn(turns_, processes_);
     }
     if (solvent) {
       turn();
@@ -363,14 +466,14 @@ template <int D> class Solver {
   {
     grid_.each_cell([&](int cell, const std::array<int, D> &rows) {
       method_.rotation.draw(random, grid_.number(rows), turns_[cell]);
-      fix_point<D>(turns_[cell], sums_[cell].mean());
+      fix_point<D>(turns_[cell], sums_.mean(cell));
     });
     if (!method_.walls) return;
     const auto &walls = *method_.walls;
     grid_.each_cell([&](int cell, const std::array<int, D> &rows) {
-      if (const auto wall = walls.cutting(grid_, rows[1]))
+      if (const auto cut = walls.cutting(grid_, rows); cut.count > 0)
         fix_point<D>(turns_[cell],
-                     walls.mean_of_cut(*wall, sums_[cell], random, grid_.number(rows)));
+                     walls.mean_of_cut(cut, sums_, cell, random, grid_.number(rows)));
     });
   }
 
@@ -380,11 +483,14 @@ template <int D> class Solver {
   Fluid<D> fluid_;
   double particles_ = 0;             // of all processes
   std::uint64_t collisions_ = 0;
-  Array<CellSum<D>> sums_;
+  CellSums<D> sums_;
   Array<Turn<D>> turns_;       // of the last collision
   bool turning_ = false;             // whether they are still to be applied
   std::vector<int> strays_;          // indices of particles in no cell of this process
+  const double *slowest_ = nullptr;  // square speed from which colloids may reflect, of each cell
+  std::vector<int> held_, listed_;   // particles that may have met colloids
   std::vector<Particle<D>> travelling_;
+  std::vector<Flight<D>> landed_;
   TileOrder<D> tiles_;
 };
 

@@ -33,19 +33,24 @@ bool fly_between(const Walls<D> &walls, Vector<D> &x, Vector<D> &v, const Vector
     }
   };
   for (int bounce = 0; bounce < MOST_BOUNCES; ++bounce) {
-    const double end = x[1] + time * (v[1] + 0.5 * time * acceleration[1]);
-    if (!(end < 0 || end > walls.width())) {
-      fly(time);
-      return true;
+    Face face{-1, false};
+    double first = time;
+    for (int a : walls.axes()) {
+      const double end = x[a] + time * (v[a] + 0.5 * time * acceleration[a]);
+      if (!(end < 0 || end > walls.width(a))) continue;
+      const double outwards = end < 0 ? -1 : 1;
+      const double wall = end < 0 ? 0 : walls.width(a);
+      const double contact = std::min(
+          contact_time(outwards * (wall - x[a]), outwards * v[a], outwards * acceleration[a]), time);
+      if (face.axis >= 0 && contact >= first) continue;
+      face = {a, end > 0};
+      first = contact;
     }
-    const double outwards = end < 0 ? -1 : 1;
-    const double wall = end < 0 ? 0 : walls.width();
-    const double contact = std::min(
-        contact_time(outwards * (wall - x[1]), outwards * v[1], outwards * acceleration[1]), time);
-    fly(contact);
-    x[1] = wall;
-    walls.contact(end < 0 ? Face::Lower : Face::Upper, v);
-    time -= contact;
+    fly(first);
+    if (face.axis < 0) return true;
+    x[face.axis] = face.upper ? walls.width(face.axis) : 0;
+    walls.contact(face, v);
+    time -= first;
   }
   return false;
 }
@@ -83,18 +88,26 @@ void stream(const std::array<double *, D> &positions, const std::array<double *,
   static thread_local std::vector<std::pair<int, std::array<Vector<D>, 2>>> bounced;
   bounced.clear();
   if (walls) {
-    const double width = walls->width();
-    const double *y = positions[1];
-    const double *vy = velocities[1];
-    const auto beyond = [&](int i) {
-      const double target = y[i] + time * (vy[i] + 0.5 * time * acceleration(1, i));
-      return (target < 0) | (target > width);
+    const auto beyond = [&](int axis, int i) {
+      const double target = positions[axis][i] +
+          time * (velocities[axis][i] + 0.5 * time * acceleration(axis, i));
+      return (target < 0) | (target > walls->width(axis));
     };
     int crossing = 0;
-    for (int i = begin; i < end; ++i) crossing += beyond(i);
+    for (int axis : walls->axes()) {
+      const double width = walls->width(axis);
+      const double *__restrict y = positions[axis];
+      const double *__restrict vy = velocities[axis];
+      for (int i = begin; i < end; ++i) {
+        const double target = y[i] + time * (vy[i] + 0.5 * time * acceleration(axis, i));
+        crossing += (target < 0) | (target > width);
+      }
+    }
     for (int i = begin; crossing > 0; ++i) {
-      if (!beyond(i)) continue;
-      --crossing;
+      int faces = 0;
+      for (int axis : walls->axes()) faces += beyond(axis, i);
+      if (faces == 0) continue;
+      crossing -= faces;
       Vector<D> x, v, a;
       for (int d = 0; d < D; ++d) {
         x[d] = positions[d][i];

@@ -11,13 +11,12 @@ namespace mpc {
 template <int D> struct Collision {
   const Grid<D> &grid;
   const CounterRandom &random;
-  const Array<CellSum<D>> &sums;
+  const CellSums<D> &sums;
   Array<Turn<D>> &turns;
   Processes &processes;
-  double particles;    // of all processes
 
-  // Mean velocity of a cell's fluid after its turn.
-  Vector<D> mean_after(int cell) const { return turns[cell].apply(sums[cell].mean()); }
+  // Mean velocity of a cell's particles after its turn.
+  Vector<D> mean_after(int cell) const { return turns[cell].apply(sums.mean(cell)); }
 };
 
 template <int D> class Thermostat {
@@ -32,19 +31,22 @@ template <int D> class Thermostat {
   virtual void redraw(Fluid<D> &, const CounterRandom &) {}
 };
 
-// Each layer of cells parallel to the walls is rescaled to T (3.53, 3.54).
+// Each layer of cells across an axis, parallel to the walls, is rescaled to T (3.53, 3.54).
 template <int D> class LayerThermostat : public Thermostat<D> {
  public:
-  explicit LayerThermostat(double temperature) : temperature_(temperature) {}
+  explicit LayerThermostat(double temperature, int axis = 1)
+    : temperature_(temperature), axis_(axis)
+  {
+  }
 
   void scale(Collision<D> &collision) override
   {
     const auto &grid = collision.grid;
-    const int layers = grid.shape[1];
+    const int layers = grid.shape[axis_];
     std::vector<double> totals(2 * layers);    // energies, then particles less occupied cells
     grid.each_cell([&](int cell, const std::array<int, D> &rows) {
-      totals[rows[1]] += collision.sums[cell].relative_energy();
-      totals[layers + rows[1]] += std::max(collision.sums[cell].count() - 1, 0.0);
+      totals[rows[axis_]] += collision.sums.relative_energy(cell);
+      totals[layers + rows[axis_]] += std::max(collision.sums.number(cell) - 1, 0.0);
     });
     collision.processes.sum(totals.data(), 2 * layers);
     std::vector<double> factors(layers, 1.0);
@@ -53,15 +55,17 @@ template <int D> class LayerThermostat : public Thermostat<D> {
         factors[layer] =
             std::sqrt(temperature_ * 0.5 * D * totals[layers + layer] / totals[layer]);
     grid.each_cell([&](int cell, const std::array<int, D> &rows) {
-      scale_about<D>(collision.turns[cell], collision.mean_after(cell), factors[rows[1]]);
+      scale_about<D>(collision.turns[cell], collision.mean_after(cell), factors[rows[axis_]]);
     });
   }
 
  private:
   double temperature_;
+  int axis_;
 };
 
-// Each cell is scaled by a Monte Carlo trial (3.55 to 3.57, 3.56 corrected for the dimension).
+// Each cell is scaled by a Monte Carlo trial (3.55 to 3.57, 3.56 corrected for the dimension;
+// hecht-2005, 33, where velocities are weighted by mass).
 template <int D> class MonteCarloThermostat : public Thermostat<D> {
  public:
   explicit MonteCarloThermostat(double temperature) : temperature_(temperature) {}
@@ -69,14 +73,14 @@ template <int D> class MonteCarloThermostat : public Thermostat<D> {
   void scale(Collision<D> &collision) override
   {
     collision.grid.each_cell([&](int cell, const std::array<int, D> &rows) {
-      const auto &sum = collision.sums[cell];
-      if (sum.count() < 2) return;
+      const double particles = collision.sums.number(cell);
+      if (particles < 2) return;
       const auto number = collision.grid.number(rows);
       const auto u = uniforms(collision.random.words(Stream::Thermostat, number));
       double factor = 1 + STRENGTH * u[0];
       if (u[1] >= 0.5) factor = 1 / factor;
-      const double freedom = D * (sum.count() - 1);
-      const double energy = sum.relative_energy() / temperature_;
+      const double freedom = D * (particles - 1);
+      const double energy = collision.sums.relative_energy(cell) / temperature_;
       if (u[2] < std::exp(freedom * std::log(factor) - (factor * factor - 1) * energy))
         scale_about<D>(collision.turns[cell], collision.mean_after(cell), factor);
     });
@@ -96,10 +100,10 @@ template <int D> class MaxwellBoltzmannThermostat : public Thermostat<D> {
   void scale(Collision<D> &collision) override
   {
     collision.grid.each_cell([&](int cell, const std::array<int, D> &rows) {
-      const auto &sum = collision.sums[cell];
-      const double energy = sum.relative_energy();
-      if (sum.count() < 2 || energy <= 0) return;
-      const int freedom = D * (static_cast<int>(sum.count()) - 1);
+      const double particles = collision.sums.number(cell);
+      const double energy = collision.sums.relative_energy(cell);
+      if (particles < 2 || energy <= 0) return;
+      const int freedom = D * (static_cast<int>(particles) - 1);
       const double drawn = draw(collision.random, collision.grid.number(rows), freedom);
       scale_about<D>(collision.turns[cell], collision.mean_after(cell),
                      std::sqrt(temperature_ * drawn / energy));
@@ -135,13 +139,15 @@ template <int D> class RescalingThermostat : public Thermostat<D> {
 
   void scale(Collision<D> &collision) override
   {
-    double energy = 0;
-    for (int cell = 0; cell < collision.grid.cells(); ++cell)
-      energy += collision.sums[cell].relative_energy() +
-          0.5 * collision.sums[cell].count() * square<D>(collision.mean_after(cell));
-    collision.processes.sum(&energy, 1);
-    if (energy > 0) {
-      const double factor = std::sqrt(0.5 * D * collision.particles * temperature_ / energy);
+    double totals[2] = {0, 0};    // energy, particles
+    for (int cell = 0; cell < collision.grid.cells(); ++cell) {
+      totals[0] += collision.sums.relative_energy(cell) +
+          0.5 * collision.sums.mass(cell) * square<D>(collision.mean_after(cell));
+      totals[1] += collision.sums.number(cell);
+    }
+    collision.processes.sum(totals, 2);
+    if (totals[0] > 0) {
+      const double factor = std::sqrt(0.5 * D * totals[1] * temperature_ / totals[0]);
       for (auto &turn : collision.turns) turn.scale(factor);
     }
   }

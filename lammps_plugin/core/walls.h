@@ -1,4 +1,4 @@
-// What solid walls are to the fluid: flat, at y = 0 and y = width.
+// What solid walls are to the fluid: flat, at both ends of each axis that is not periodic.
 //
 // Streaming finds who meets a wall, and when; the walls say with which velocity it leaves. At the
 // collision they say how the cells move that they cut.
@@ -7,26 +7,43 @@
 
 #include "collision.h"
 
-#include <optional>
-
 namespace mpc {
 
-enum class Face { Lower, Upper };
+struct Face {
+  int axis;
+  bool upper;
+
+  int number() const { return 2 * axis + upper; }
+};
+
+// By axis, the face beyond which a cell reaches: -1 lower, +1 upper, 0 none.
+template <int D> struct Cut {
+  std::array<int, D> sides{};
+  int count = 0;
+};
 
 template <int D> class Walls {
  public:
-  explicit Walls(double width) : width_(width) {}
+  explicit Walls(const Grid<D> &grid) : width_(grid.box)
+  {
+    for (int a = 0; a < D; ++a)
+      if (!grid.periodic[a]) axes_.push_back(a);
+  }
   virtual ~Walls() = default;
 
-  double width() const { return width_; }
+  // The axes that they stand across, and their distance.
+  const std::vector<int> &axes() const { return axes_; }
+  double width(int axis) const { return width_[axis]; }
 
-  // The wall that a row of cells reaches beyond.
-  std::optional<Face> cutting(const Grid<D> &grid, int row) const
+  Cut<D> cutting(const Grid<D> &grid, const std::array<int, D> &rows) const
   {
-    const double start = row - grid.shift[1];
-    if (start < 0) return Face::Lower;
-    if (start + 1 > width_ / grid.edge) return Face::Upper;
-    return std::nullopt;
+    Cut<D> cut;
+    for (int a : axes_) {
+      const double start = rows[a] - grid.shift[a];
+      cut.sides[a] = start < 0 ? -1 : start + 1 > width_[a] / grid.edge;
+      cut.count += cut.sides[a] != 0;
+    }
+    return cut;
   }
 
   // Make the velocity that meets a wall the one that leaves it, for the inside.
@@ -35,12 +52,13 @@ template <int D> class Walls {
   // Most that contacts with one of the walls add to a speed.
   virtual double gain() const { return 0; }
 
-  // Mean velocity of a cell that a wall cuts, with all that takes part in its collision.
-  virtual Vector<D> mean_of_cut(Face, const CellSum<D> &, const CounterRandom &,
-                                std::uint64_t cell) const = 0;
+  // Mean velocity of a cell that walls cut, with all that takes part in its collision.
+  virtual Vector<D> mean_of_cut(const Cut<D> &, const CellSums<D> &, int cell,
+                                const CounterRandom &, std::uint64_t number) const = 0;
 
  private:
-  double width_;
+  Vector<D> width_;
+  std::vector<int> axes_;
 };
 
 }    // namespace mpc

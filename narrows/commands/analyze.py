@@ -5,7 +5,7 @@ from typing import Annotated
 
 import typer
 
-from narrows.messages import user_errors
+from narrows.messages import complain, printable, say, user_errors, warn
 from run_files.sweep_file import is_sweep
 from srd_driver.sweep import available_cores
 
@@ -15,7 +15,6 @@ def analyze(
 ) -> None:
     """Analyse a run: writes summary.json and figures into DIR; of a sweep, all runs and a table."""
     from rich.console import Console  # here, so that `narrows --help` stays fast
-    from rich.markup import escape
     from rich.table import Table
 
     from analysis import analyze as analyze_run
@@ -28,20 +27,20 @@ def analyze(
         summary = analyze_run(directory)
     state = "" if summary["finished"] else ", not finished"
     title = f"{summary['scene']}, engine {summary['engine']}{state}"
-    table = Table("quantity", "value", "error", "note", title=escape(title), title_justify="left")
+    headings = ("quantity", "value", "error", "note")
+    table = Table(*headings, title=printable(title), title_justify="left")
     for path, entry in estimates(summary).items():
         name = path.replace(".", " ").replace("_", " ")
         theory = entry.get("theory")
         note = entry.get("reason") or ("" if theory is None else f"theory {theory:.5g}")
         numbers = _number(entry["value"], 5), _number(entry["error"], 2)
-        table.add_row(escape(name), *numbers, escape(note))
-    console = Console()
+        table.add_row(printable(name), *numbers, printable(note))
+    console = Console(markup=False, emoji=False)
     console.print(table)
     files = ["summary.json", *summary["figures"]]
     files_line = f"written to {directory}: {', '.join(files)}"
-    console.print(files_line, highlight=False, markup=False, soft_wrap=True)
-    for warning in summary["warnings"]:
-        typer.echo(f"warning: {warning}", err=True)
+    console.print(printable(files_line), highlight=False, soft_wrap=True)
+    warn(summary["warnings"])
 
 
 def _tabulate(directory: Path) -> None:
@@ -50,8 +49,8 @@ def _tabulate(directory: Path) -> None:
     with user_errors():
         table = tabulate(directory, available_cores())
     for problem in table.problems:
-        typer.echo(f"narrows: {problem}", err=True)
-    typer.echo(
+        complain(problem)
+    say(
         f"written: {directory / 'table.csv'}: {len(table.rows)} points "
         f"from {table.finished} of {table.runs} runs"
     )

@@ -9,6 +9,8 @@ from typing import TYPE_CHECKING, Annotated, Any, NoReturn
 
 import typer
 
+from narrows.messages import printable
+
 if TYPE_CHECKING:
     from lattice.models import LatticeGas
 
@@ -26,7 +28,7 @@ Figures = Annotated[
 
 def _refuse(message: object) -> NoReturn:
     """One message on stderr, exit code 2."""
-    typer.echo(f"narrows lattice: {message}", err=True)
+    typer.echo(printable(f"narrows lattice: {message}"), err=True)
     raise typer.Exit(2)
 
 

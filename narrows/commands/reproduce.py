@@ -6,7 +6,7 @@ from typing import Annotated
 
 import typer
 
-from narrows.messages import say, user_errors
+from narrows.messages import complain, say, user_errors
 from narrows.papers import paper_named, papers
 from narrows.progress import progress_of_runs
 from srd_driver.signals import interrupted_by_signals
@@ -57,6 +57,6 @@ def reproduce(
         say(f"{len(done.results)} results, {verdicts}; {minutes} min {seconds} s")
         say(f"open {out / 'index.html'}")
     for line in done.left_out:
-        typer.echo(f"narrows: {line}", err=True)
+        complain(line)
     if done.left_out:
         raise typer.Exit(1)

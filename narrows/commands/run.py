@@ -13,7 +13,7 @@ from narrows.scene_options import ENGINES, SceneFile, SceneName, Settings, scene
 from run_files.manifest import read_manifest
 from srd_driver import Simulation
 from srd_driver.parallel import agree, communicator
-from srd_driver.resume import is_half_made, stored_fields
+from srd_driver.resume import is_half_made, stored_fields, tells_scene
 from srd_driver.signals import stopped_by_signals
 
 
@@ -56,6 +56,8 @@ def run(
 
 def _stored(directory: Path) -> tuple[dict[str, Any], str | None]:
     """Fields and engine of the run to resume, if there is one."""
-    if not directory.is_dir() or not any(directory.iterdir()) or is_half_made(directory):
+    if not directory.is_dir() or not any(directory.iterdir()):
+        return {}, None
+    if is_half_made(directory) and not tells_scene(directory):
         return {}, None
     return stored_fields(directory), read_manifest(directory).engine

@@ -13,9 +13,9 @@ from lammps_inputs.engines import DEFAULT
 from narrows.messages import say, user_errors, warn
 from narrows.progress import progress_of_runs
 from narrows.scene_options import ENGINES, SceneFile, SceneName, Settings, scene_fields
+from run_files.manifest import CHANGEABLE
 from srd_driver import RunError, sweep_definition
 from srd_driver.parallel import communicator
-from srd_driver.resume import CHANGEABLE
 from srd_driver.signals import interrupted_by_signals
 from srd_driver.sweep import Run, available_cores, is_finished, run_all
 from srd_driver.sweep_definition import Sweep

@@ -29,6 +29,7 @@ class Stream(enum.IntEnum):
     THERMOSTAT = 4  # item = cell (Monte Carlo, Maxwell-Boltzmann) or particle (Andersen)
     SHUFFLE = 5  # items 0, 1: keys of the eight rounds of the permutation
     BATH = 6  # item = particle: normals of its new velocity
+    REFLECTION = 8  # item = particle, block = contact: its velocity after a contact with a colloid
 
 
 @dataclass(frozen=True)

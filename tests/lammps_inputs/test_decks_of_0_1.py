@@ -2,6 +2,7 @@
 
 import hashlib
 import json
+import math
 import re
 from pathlib import Path
 from typing import Any
@@ -27,6 +28,8 @@ def present(old: str, case: dict[str, Any]) -> str:
     if case["engine"] == "mpc" and case["scene"] != "channel":
         # there are no colloids to make a group of
         lines = [line for line in lines if line != "group colloids type 1"]
+    if case["engine"] == "mpc":
+        lines = _with_lists_at_collisions(lines, case)
     return "\n".join(lines) + "\n"
 
 
@@ -47,6 +50,25 @@ def _with_check_of_sample(lines: list[str], look: int) -> list[str]:
         f'"print \'ERROR: sample must be a multiple of {look}, at least twice that\'" "quit 1"'
     )
     return [*lines[:at], check, *lines[at:]]
+
+
+def _with_lists_at_collisions(lines: list[str], case: dict[str, Any]) -> list[str]:
+    """Lists were built, and places wrapped, at steps of checkpoints too, which then showed.
+
+    They must hold for a collision interval in which two colloids may come closer.
+    """
+    every = next(line.split()[4] for line in lines if line.startswith("fix solvent all mpc "))
+    old = "neigh_modify delay 0 every 1 check yes"
+    new = [
+        "# when lists are built and places wrapped shows in last digits: at each collision",
+        f"neigh_modify delay 0 every {every} check no",
+    ]
+    if case["scene"] == "channel":
+        scene = make_scene("channel", **case["fields"])
+        mass = math.pi * scene.colloid_radius**2 * scene.density
+        skin = max(0.5, 2 * scene.collision_time * (1 + 10 / math.sqrt(mass)))
+        lines = [line.replace("neighbor 0.5 bin", f"neighbor {skin:.6g} bin") for line in lines]
+    return [now for line in lines for now in (new if line == old else [line])]
 
 
 def _with_drive_at_zero(lines: list[str], case: dict[str, Any]) -> list[str]:

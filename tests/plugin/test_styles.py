@@ -101,6 +101,21 @@ def test_the_wall_is_the_numpy_definition(lammps: Commands) -> None:
         ("mpc 1 all 1 1 5 force 2 1 1 " + FLUID, "force 2: no such atom type"),
         ("mpc 1 all 1 1 5 force 1 1 0 " + FLUID, "force sigma 0: must be positive"),
         ("mpc 1 NULL 1 1 5 force 1 1 1 " + FLUID, "force: there is no colloid group"),
+        ("mpc 1 all 1 1 5 reflect 2 1 entry " + FLUID, "reflect 2: no such atom type"),
+        ("mpc 1 all 1 1 5 reflect 1 0 entry " + FLUID, "reflect radius 0: must be positive"),
+        ("mpc 1 all 1 1 5 reflect 1 1 inside " + FLUID, "reflect placement inside: must be one of"),
+        ("mpc 1 NULL 1 1 5 reflect 1 1 entry " + FLUID, "reflect: there is no colloid group"),
+        ("mpc 1 all 1 1 5 reflect 1 1 entry " + FLUID, "reflect: needs atom_style sphere"),
+        ("mpc 1 NULL 1 1 5 collide yes " + FLUID, "collide: there is no colloid group"),
+        ("mpc 1 all 1 1 5 collide maybe " + FLUID, "collide maybe: must be one of yes, no"),
+        ("mpc 1 all 1 1 5 collide yes force 1 1 1 " + FLUID, "only one of force, reflect and"),
+        ("mpc 1 NULL 1 1 5 wall xlo 0 1 0 " + FLUID, "wall xlo: the face is periodic"),
+        ("mpc 1 NULL 1 1 5 wall top 0 1 0 " + FLUID, "wall top: must be one of xlo, xhi"),
+        ("mpc 1 NULL 1 1 5 wall ylo 0 1 0 " + FLUID, "wall ylo: it can move along periodic axes"),
+        ("mpc 1 NULL 1 1 5 virtual 1 " + FLUID, "virtual 1: must be one of yes, no"),
+        ("mpc 1 NULL 1 1 5 compensate 1 0 0 " + FLUID, "compensate: there is no colloid group"),
+        ("mpc 1 NULL 1 1 5 momentum 10 " + FLUID, "momentum: walls take up momentum"),
+        ("mpc 1 NULL 1 1 5 momentum 0 " + FLUID, "momentum 0: must be positive"),
         ("mpc 2 NULL 1 1 5 profile 3 6 file p.dat " + FLUID, "profile Nevery 3"),
         ("mpc 1 NULL 1 1 5 bins 0 " + FLUID, "bins 0: must be positive"),
         ("mpc 1 NULL 1 1 5 colour red " + FLUID, "unknown keyword colour"),
@@ -170,6 +185,35 @@ def test_arrays_and_scalars_are_those_of_the_fluid(lammps: Commands) -> None:
     assert instance.extract_fix("fluid", 0, 0) == pytest.approx(temperature, rel=1e-12)
 
 
+@pytest.mark.parametrize(
+    ("rows", "complaint"),
+    [
+        (
+            [[0, 1, 1, 0, 0], [1, 2, 8.5, 0, 0]],
+            "particle 1 of bad.fluid has y = 8.5: .* beyond a wall",
+        ),
+        ([[0, 1, 1, 0, 0], [1, 2, -0.1, 0, 0]], "particle 1 of bad.fluid has y = -0.1"),
+        ([[0, 1, 1, 0, 0], [1, np.nan, 1, 0, 0]], "particle 1 of bad.fluid has x = .*nan"),
+        ([[1, 1, 1, 0, 0], [1, 2, 1, 0, 0]], "bad.fluid has two particles 1"),
+        ([[0, 1, 1, 0, 0], [2, 2, 1, 0, 0]], "has a particle 2: numbers are whole, from 0 to 1"),
+        ([[0, 1, 1, 0, 0], [0.5, 2, 1, 0, 0]], "has a particle 0.5: numbers are whole"),
+    ],
+)
+def test_a_particle_that_cannot_be_is_not_loaded(
+    lammps: Commands, rows: list[list[float]], complaint: str
+) -> None:
+    header = b"mpcfluid" + np.array([2, len(rows), 0], dtype="<i8").tobytes()
+    Path("bad.fluid").write_bytes(header + np.array(rows, dtype="<f8").tobytes())
+    with pytest.raises(Exception, match=complaint):
+        lammps(slit() + "fix fluid all mpc 1 NULL 1 1 7 load bad.fluid density 10\nrun 0")
+
+
+def test_more_processes_than_cells_are_refused(tmp_path: Path, command: Run) -> None:
+    scene = make_scene("bulk", length=4, width=4)
+    with pytest.raises(AssertionError, match=r"5 processes along . are too many for its 4"):
+        run_mpc(scene, 1, tmp_path, command, ranks=5)
+
+
 COLLOID = "create_atoms 1 single 6 4 0"
 MOVING = """
 fix motion all nve
@@ -227,6 +271,7 @@ def test_between_two_collisions_nothing_is_written(lammps: Commands, command: st
 
 def test_import_lammps_finds_the_styles(lammps: Commands) -> None:
     assert {"mpc", "wall/lj115"} <= set(lammps("").available_styles("fix"))
+    assert "dlvo" in lammps("").available_styles("pair")
 
 
 @pytest.mark.parametrize(("name", "fields"), [("channel", {"length": 21}), ("poiseuille", {})])

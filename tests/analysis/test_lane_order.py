@@ -1,0 +1,77 @@
+import numpy as np
+import pytest
+
+from analysis.lane_order import lane_order, lane_order_printed
+
+COLOURS = np.arange(200) % 2
+
+
+def brute_force(positions, colours, lengths, axes):
+    """Every pair of every frame, delhommelle-2005, II."""
+    frames, particles, dimension = positions.shape
+    spacing = (particles / np.prod(lengths)) ** (-1 / dimension)
+    alone = np.zeros(frames)
+    for t in range(frames):
+        for i in range(particles):
+            distances = []
+            for j in range(particles):
+                if colours[i] != colours[j]:
+                    d = positions[t, i, axes] - positions[t, j, axes]
+                    d -= np.array(lengths)[axes] * np.round(d / np.array(lengths)[axes])
+                    distances.append(np.sqrt((d**2).sum()))
+            alone[t] += min(distances) > spacing
+    return alone / particles
+
+
+@pytest.mark.parametrize("lengths", [[9.0, 14.0], [4.0, 6.0, 9.0]])
+def test_brute_force(lengths) -> None:
+    random = np.random.default_rng(0)
+    positions = random.uniform(-10, 20, (3, 60, len(lengths)))
+    colours = np.arange(60) < 4  # few of one colour, so that phi is neither 0 nor 1
+    across = list(range(1, len(lengths)))
+    expected = brute_force(positions, colours, lengths, across)
+    assert lane_order(positions, colours, lengths).tolist() == expected.tolist()
+    assert 0 < expected.mean() < 1
+    along = brute_force(positions, colours, lengths, [0])
+    assert lane_order_printed(positions, colours, lengths).tolist() == along.tolist()
+
+
+def stripes(axis, dimension=2):
+    """200 particles at random, the colours in two halves of the box along an axis with gaps."""
+    random = np.random.default_rng(1)
+    lengths = np.full(dimension, 200 ** (1 / dimension))
+    positions = random.uniform(0, 1, (4, 200, dimension))
+    positions[:, :, axis] = 0.1 + 0.3 * positions[:, :, axis] + 0.5 * COLOURS
+    return positions * lengths, lengths
+
+
+@pytest.mark.parametrize("dimension", [2, 3])
+def test_lanes_along_the_field_and_the_erratum(dimension) -> None:
+    """Two lanes along x: the lateral distance sees them, the printed one, along x, does not."""
+    positions, lengths = stripes(1, dimension)
+    assert lane_order(positions, COLOURS, lengths).tolist() == [1] * 4
+    assert lane_order_printed(positions, COLOURS, lengths).max() < 0.02
+    bands, _ = stripes(0, dimension)
+    assert lane_order_printed(bands, COLOURS, lengths).tolist() == [1] * 4
+    assert lane_order(bands, COLOURS, lengths).max() < 0.1
+
+
+def test_a_well_mixed_gas() -> None:
+    """None of 448 particles of the other colour within a spacing: (1 - 2/sqrt(896))^448."""
+    random = np.random.default_rng(2)
+    lengths = np.sqrt([896.0, 896.0])
+    positions = random.uniform(0, lengths, (20, 896, 2))
+    order = lane_order(positions, np.arange(896) % 2, lengths)
+    assert order.mean() < 1e-3
+
+
+def test_the_distance_is_periodic() -> None:
+    # one pair, 9.5 apart across a box of 10, spacing sqrt(50): 0.5 through the boundary
+    positions = np.array([[[0.0, 0.2], [5.0, 9.7]]])
+    assert lane_order(positions, [1, -1], [10.0, 10.0]).tolist() == [0]
+    assert lane_order_printed(positions, [1, -1], [10.0, 10.0]).tolist() == [0]
+
+
+def test_one_colour_is_refused() -> None:
+    with pytest.raises(ValueError, match="1 colours: lanes need two"):
+        lane_order(np.zeros((1, 2, 2)), [1, 1], [10.0, 10.0])

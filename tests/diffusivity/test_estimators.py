@@ -1,0 +1,206 @@
+"""The three estimators on walks whose diffusivity is known, and on cases by hand."""
+
+import MDAnalysis
+import numpy as np
+import pytest
+from MDAnalysis.coordinates.memory import MemoryReader
+
+from analysis.diffusivity import (
+    AlongAxis,
+    BayesianDiffusivity,
+    ColorDiffusivity,
+    DiffusivityError,
+    FirstPassageDiffusivity,
+    PairDistance,
+    color_diffusivity,
+)
+from analysis.diffusivity.bayes import TransitionLikelihood
+from analysis.diffusivity.blocks import jackknife, quantile_95
+from analysis.diffusivity.local_fit import local_derivative
+from tests.diffusivity import walks
+
+WALKERS = 100
+
+
+@pytest.fixture(scope="module")
+def path():
+    return walks.walk(12 * WALKERS, 3000, seed=2)
+
+
+def coverage(path, make):
+    """Fraction of bins, in the middle, whose 95 % bar holds the truth; and the median ratio."""
+    inside, ratios = [], []
+    for first in range(0, path.shape[1], WALKERS):
+        group = walks.universe(path[:, first : first + WALKERS]).atoms
+        results = make(AlongAxis(group)).run().results
+        middle = np.abs(results.positions - walks.LENGTH / 2) < 1.2
+        true = walks.diffusivity(results.positions[middle])
+        deviation = results.diffusivity[middle] - true
+        inside.append(np.abs(deviation) < quantile_95(10) * results.error[middle])
+        ratios.append(results.diffusivity[middle] / true)
+    return np.mean(inside), np.median(ratios)
+
+
+ESTIMATORS = [
+    lambda c: ColorDiffusivity(c, 0.3, 3.7, probability=0.3, reach=0.5, bin_width=0.05),
+    lambda c: FirstPassageDiffusivity(c, 0.3, 3.7, reach=0.5, bin_width=0.05),
+]
+
+
+@pytest.mark.parametrize("make", ESTIMATORS, ids=["color", "first passage"])
+def test_error_bars_cover_the_truth(path, make) -> None:
+    inside, ratio = coverage(path, make)
+    assert inside > 0.88  # 12 walks of correlated bins: 0.95 +- 0.03
+    assert ratio == pytest.approx(1, abs=0.07)
+
+
+@pytest.mark.statistics
+@pytest.mark.parametrize("make", ESTIMATORS, ids=["color", "first passage"])
+def test_error_bars_cover_the_truth_in_95_of_100(make) -> None:
+    inside, ratio = coverage(walks.walk(60 * WALKERS, 3000, seed=5), make)
+    assert inside == pytest.approx(0.95, abs=0.03)
+    assert ratio == pytest.approx(1, abs=0.05)
+
+
+def test_bayesian_profile_and_its_lags(path) -> None:
+    """Short lags are biased by the bins' width, which diffusion must outgrow; long ones are noisy.
+
+    At 0.4, where the root mean square displacement is 3.5 bins, the bars hold the truth.
+    """
+    group = walks.universe(path[:, : 4 * WALKERS]).atoms
+    analysis = BayesianDiffusivity(
+        AlongAxis(group), 0, walks.LENGTH, bins=16, lags=(2, 20, 40), lag=20, samples=300
+    ).run()
+    results = analysis.results
+    true = walks.diffusivity(results.positions)
+    assert results.lag == pytest.approx(0.4)
+    bias = (results.by_lag / true - 1).mean(axis=1)
+    assert bias[0] > 0.15
+    assert abs(bias[1]) < 0.03
+    assert results.errors_by_lag[2].mean() > 2 * results.errors_by_lag[1].mean()
+    assert ((results.interval[0] < true) & (true < results.interval[1])).sum() >= 13  # of 15
+    # about as wide as the curvature at its top says, but skewed next to the walls
+    inner = slice(2, -2)
+    assert results.error[inner] == pytest.approx(results.errors_by_lag[1][inner], rel=0.4)
+
+
+def test_likelihood_is_that_of_the_exponential_and_its_gradient() -> None:
+    from scipy.linalg import expm
+
+    random = np.random.default_rng(0)
+    population = random.uniform(0.5, 1.5, 6)
+    population /= population.sum()
+    counts = random.integers(0, 50, (6, 6)).astype(float)
+    x = random.normal(size=5) * 0.3
+    likelihood = TransitionLikelihood(counts, population, 0.5, 0.7)
+    rates = np.zeros((6, 6))
+    for i, d in enumerate(np.exp(x)):  # Hummer's rate matrix, entry by entry
+        rates[i + 1, i] = d / 0.25 * np.sqrt(population[i + 1] / population[i])
+        rates[i, i + 1] = d / 0.25 * np.sqrt(population[i] / population[i + 1])
+    rates -= np.diag(rates.sum(axis=0))
+    assert rates @ population == pytest.approx(np.zeros(6), abs=1e-14)
+    expected = np.sum(counts * np.log(expm(0.7 * rates)))
+    value, gradient = likelihood.value_and_gradient(x)
+    assert value == pytest.approx(expected, rel=1e-12)
+    for n, unit in enumerate(np.eye(5)):
+        difference = (likelihood.value(x + 1e-5 * unit) - likelihood.value(x - 1e-5 * unit)) / 2e-5
+        assert gradient[n] == pytest.approx(difference, rel=1e-6)
+
+
+def test_local_derivative_of_a_cubic_is_exact() -> None:
+    x = np.linspace(0, 3, 61)
+    weights = np.random.default_rng(0).uniform(0.1, 2, 61)
+    slopes = local_derivative(x, 2 - x + x**3, weights, 0.3)
+    assert slopes == pytest.approx(-1 + 3 * x**2, abs=1e-10)
+    assert np.isnan(local_derivative(x, x, weights * (x < 0.2), 0.3)[:4]).all()
+
+
+def test_jackknife_of_a_mean() -> None:
+    data = np.random.default_rng(1).normal(size=(10, 4))
+    value, error = jackknife(lambda total: total / 10, data)
+    assert value == pytest.approx(data.mean(axis=0))
+    nine = [np.delete(data, n, 0).sum(axis=0) / 10 for n in range(10)]
+    assert error == pytest.approx(np.sqrt(0.9 * ((nine - np.mean(nine, axis=0)) ** 2).sum(axis=0)))
+
+
+def steady_pairs(blocks=6):
+    """Exact steady state about a particle: D(r) = 1 - 0.5/r, rho(r) = 1 + 1/r^4, J = 2."""
+    width = 0.02
+    r = 1 + width * np.arange(0.5, 150)
+    fine = np.linspace(1, 4, 60001)
+    slope = 2 / (4 * np.pi * fine**2 * (1 + fine**-4) * (1 - 0.5 / fine))
+    x = 0.1 + np.concatenate([[0], np.cumsum((slope[1:] + slope[:-1]) / 2 * np.diff(fine))])
+    number = 4 * np.pi * r**2 * (1 + r**-4) * width
+    colored = number * np.interp(r, fine, x)
+    repeat = np.ones((blocks, 1))
+    return r, width, repeat * number, repeat * colored, 2 * repeat[:, 0]
+
+
+def test_erratum_3_printed_pair_formula_fails_and_the_corrected_holds() -> None:
+    """(3) of carmer-2012 has dx/dr - 2x/r, which makes D(r) negative; with dx/dr it is exact."""
+    r, width, number, colored, rate = steady_pairs()
+    true = 1 - 0.5 / r
+    corrected, _ = color_diffusivity(r, width, number, colored, rate, 0.1)
+    assert corrected == pytest.approx(true, rel=2e-3)
+
+    x, density = colored[0] / number[0], number[0] / (4 * np.pi * r**2 * width)
+    slope = local_derivative(r, x, number[0], 0.1)
+    flux = -2 / (4 * np.pi * r**2)  # A flows inwards
+    printed = -flux / (density * (slope - 2 * x / r))
+    assert (printed[r > 1.5] < 0).all()
+    assert -flux / (density * slope) == pytest.approx(true, rel=2e-3)
+    # the same for B, as it must: x -> 1 - x, j -> -j
+    assert flux / (density * -slope) == pytest.approx(true, rel=2e-3)
+
+
+def test_erratum_3_printed_form_is_exact_for_weighted_quantities() -> None:
+    """With y = r^2 x and r^2 j for x and j the printed form is the corrected one."""
+    r, _width, number, colored, _rate = steady_pairs()
+    x = colored[0] / number[0]
+    y = r**2 * x
+    slope = local_derivative(r, y, number[0], 0.1) - 2 * y / r
+    assert slope == pytest.approx(r**2 * local_derivative(r, x, number[0], 0.1), rel=2e-2)
+
+
+def test_pair_distances_are_those_of_nearest_images() -> None:
+    positions = np.array([[[0.5, 5, 5], [9.5, 5, 5], [5, 5, 5], [5, 5, 9.0]]], dtype=np.float32)
+    made = MDAnalysis.Universe.empty(4, trajectory=True)
+    made.load_new(positions, format=MemoryReader, dimensions=[10, 10, 10, 90, 90, 90])
+    pairs = PairDistance(made.atoms, made.atoms[:2])
+    far = np.sqrt(4.5**2 + 4**2)
+    assert pairs.values() == pytest.approx([1, 4.5, far, 1, 4.5, far])
+
+
+def still(walkers=5, frames=40):
+    return AlongAxis(walks.universe(np.full((frames, walkers), 2.0)).atoms)
+
+
+BAD = [
+    (lambda: AlongAxis(walks.universe(np.ones((3, 2))).atoms, "r"), "axis: 'r'; it must be"),
+    (lambda: ColorDiffusivity(still(), 2, 1), "low: 2; it must be below high, 1"),
+    (lambda: ColorDiffusivity(still(), 1, 3, probability=0), r"probability: 0; it must be in \(0"),
+    (lambda: ColorDiffusivity(still(), 1, 3, settle=1), r"settle: 1; it must be in \[0, 1\)"),
+    (lambda: ColorDiffusivity(still(), 1, 3, blocks=2), "blocks: 2; at least 3"),
+    (lambda: ColorDiffusivity(still(), 1, 3).run(), "0 reactions; at least 100 are needed"),
+    (lambda: ColorDiffusivity(still(), 1, 3).run(stop=5), "5 frames; more are needed"),
+    (lambda: FirstPassageDiffusivity(still(), 1, 3).run(), "0 round trips to a level; at least 20"),
+    (lambda: BayesianDiffusivity(still(), 1, 3, lags=(2, 1)), r"lags: \[2, 1\]; positive and inc"),
+    (lambda: BayesianDiffusivity(still(), 1, 3, lag=3), "lag: 3; it must be one of the lags"),
+    (lambda: BayesianDiffusivity(still(), 1, 3, bins=2), "bins: 2; at least 3"),
+    (lambda: BayesianDiffusivity(still(), 1, 3).run(), "no walker was ever in the bin at 1.05"),
+]
+
+
+@pytest.mark.parametrize(("make", "message"), BAD)
+def test_bad_input_is_named(make, message) -> None:
+    with pytest.raises(DiffusivityError, match=message):
+        make()
+
+
+def test_too_few_crossings_are_counted_in_the_message() -> None:
+    z = np.full((40, 6), 0.5)
+    z[:, 1], z[:, 2:] = 1.5, 2.5
+    z[20:, 2] = 1.5
+    analysis = BayesianDiffusivity(AlongAxis(walks.universe(z).atoms), 0, 3, bins=3, lags=(1,))
+    with pytest.raises(DiffusivityError, match="0 crossings of a face at a lag of 1 frames; at le"):
+        analysis.run()
