@@ -164,7 +164,8 @@ def test_chance_is_the_mean_label_over_lots() -> None:
         (PairReactions([0.1, 0.5], centers=[3, 8], cutoff=2.7), [6, 6, 6], ()),
     ):
         start = HardSpheres.fluid(90, box, walls, seed=1)
-        total, chances = np.zeros(90), []
+        chances: list[Any] = []
+        total: Any = 0.0
         for seed in range(400):
             engine = HardSpheres(
                 start.positions, start.velocities, box, walls, reactions=reactions, seed=seed
