@@ -28,7 +28,7 @@ import numpy as np
 from matplotlib.figure import Figure
 
 from analysis.analyze import summary_of
-from analysis.blocking import Estimate
+from analysis.estimate import Estimate
 from analysis.sweep_table import combine
 from lammps_inputs import Scene, make_scene
 from lammps_inputs.scenes.channel import Channel

@@ -15,6 +15,7 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.optimize import brentq
 
+from lattice.generator import require_time
 from lattice.models import LatticeGas, RateError, Vector
 from lattice.shocks import ShockWalk
 
@@ -128,6 +129,8 @@ def solve(
     fastest = float(np.abs(relation.speed(np.linspace(relation.low, relation.high, _GRID))).max())
     width = 1 / u.size
     result = np.empty((len(times), u.size))
+    last = float(max(times, default=0.0))
+    require_time(last * fastest * u.size**2, 1e7, f"{u.size} cells to time {last:g}")
     now = 0.0
     for row, time in enumerate(times):
         steps = int(np.ceil((time - now) * fastest / (0.9 * width)))
