@@ -56,6 +56,7 @@ class Mixture:
 def mixture(dimension: int, temperature: float = 1.0) -> Mixture:
     """A crystal shaken by 0.07, with Maxwell velocities and no total momentum."""
     random = np.random.default_rng(7)
+    counts: tuple[int, ...]
     if dimension == 2:
         potential: SoftDisk | WeeksChandlerAndersen = SoftDisk()
         cell = np.array([1.0, np.sqrt(3)]) * np.sqrt(2 / np.sqrt(3) / 0.92)

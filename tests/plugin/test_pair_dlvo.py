@@ -79,12 +79,12 @@ def test_energy_and_force_are_those_of_numpy(lammps: Commands, dlvo: Dlvo) -> No
         x = vectors(instance, "x")
         r = float(np.sqrt(((x[1] - x[0]) ** 2).sum()))
         gap = abs(r - dlvo.diameter) / dlvo.diameter  # the attraction goes with 1 / gap
-        scale = 1e-12 * (1 + abs(dlvo.dlvo_energy(max(r, dlvo.joint))) / max(gap, 1e-3))
+        scale = 1e-12 * (1 + abs(float(dlvo.dlvo_energy(max(r, dlvo.joint)))) / max(gap, 1e-3))
         assert_allclose(instance.get_thermo("pe"), dlvo.energy(r), rtol=1e-12, atol=scale)
         force = vectors(instance, "f")
         assert_allclose(force[0], -force[1], rtol=0, atol=0)
         along = force[1] @ (x[1] - x[0]) / r
-        slope = 1e-12 * (1 + abs(dlvo.dlvo_force(max(r, dlvo.joint))) / max(gap, 1e-3))
+        slope = 1e-12 * (1 + abs(float(dlvo.dlvo_force(max(r, dlvo.joint)))) / max(gap, 1e-3))
         assert_allclose(along, dlvo.force(r), rtol=1e-12, atol=slope)
 
 
