@@ -155,9 +155,9 @@ class System(Part):
         for wall in self.walls:
             if wall.axis >= self.box.dimensions or self.box.periodic[wall.axis]:
                 raise ValueError(f"a wall across axis {wall.axis}, which is periodic or none")
-        if self.reactions and self.reactions.axis is not None:
-            if self.reactions.axis not in [wall.axis for wall in self.walls]:
-                raise ValueError(f"reactions at walls of axis {self.reactions.axis}: it has none")
+        reacting = self.reactions.axis if self.reactions else None
+        if reacting is not None and reacting not in [wall.axis for wall in self.walls]:
+            raise ValueError(f"reactions at walls of axis {reacting}: it has none")
         return self
 
 
