@@ -42,8 +42,6 @@ def _system(system: System) -> dict[str, Any]:
         for wall in system.walls
     ]
     content["motion"] = _named(system.motion)
-    if system.reactions is None:
-        del content["reactions"]
     if system.solvent:
         theory = viscosity_theory(system.solvent, system.box.dimensions)
         content["solvent"]["viscosity_theory"] = theory
