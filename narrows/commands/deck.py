@@ -6,7 +6,7 @@ from typing import Annotated
 import typer
 
 import lammps_plugin
-from lammps_inputs.deck import warnings, write_deck
+from lammps_inputs.deck import check_engine, warnings, write_deck
 from lammps_inputs.engines import default_engine, lammps_engine_named
 from narrows.messages import say, user_errors, warn
 from narrows.scene_options import DECKS, SceneFile, SceneName, Settings, scene_of
@@ -26,6 +26,7 @@ def deck(
         chosen = scene_of(scene, file, settings)
         engine = engine or default_engine(chosen.system)
         plugin = lammps_engine_named(engine).plugin
+        check_engine(chosen, engine)
         warn(warnings(chosen, engine))
         out.mkdir(parents=True, exist_ok=True)
         if any(out.iterdir()):
