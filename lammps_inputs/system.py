@@ -230,7 +230,35 @@ class VelocityVerlet:
     """Newton's equations of motion, by velocity Verlet."""
 
 
-Motion = VelocityVerlet
+@dataclass(frozen=True)
+class Events:
+    """Free flight from one elastic collision to the next, at exact times.
+
+    Species collide where their radii say that surfaces touch, with each other and with walls.
+    """
+
+
+Motion = VelocityVerlet | Events
+
+
+@dataclass(frozen=True)
+class Reactions:
+    """Colours A and B that no particle feels: A turns to B at one surface, B to A at another.
+
+    The surfaces are the lower and the upper wall of an axis; or, about central particles, contact
+    with one of them and the sphere of radius `cutoff`, entered from outside.
+
+    Attributes:
+        probabilities: of a reaction at each visit, (0, 1]; each has colours of its own.
+        axis: of the walls; None where central particles have the surfaces.
+        centers: the first so many particles are central.
+        cutoff: radius of the outer surface [a0].
+    """
+
+    probabilities: tuple[float, ...]
+    axis: int | None = None
+    centers: int = 0
+    cutoff: float = 0.0
 
 
 @dataclass(frozen=True)
@@ -274,7 +302,7 @@ class Output:
 
     Attributes:
         file: its name.
-        kind: trajectory of particles; table of averages; profile across the y axis.
+        kind: trajectory of particles; table of averages; profile, averages by bins.
         columns: beside the step. Those of a table are quantities that the engine averages.
     """
 
@@ -307,6 +335,7 @@ class System:
         solvent: None: the species move in vacuum.
         outputs: what the run writes.
         measures: what `narrows analyze` makes of it, names of `analysis/measures`.
+        reactions: of colours, if any.
     """
 
     box: Box
@@ -320,6 +349,7 @@ class System:
     drives: tuple[Drive, ...] = ()
     motion: Motion = VelocityVerlet()
     solvent: Solvent | None = None
+    reactions: Reactions | None = None
 
     @property
     def particles(self) -> int:

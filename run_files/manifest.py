@@ -109,6 +109,15 @@ class Solvent(Part):
     viscosity_theory: float | None
 
 
+class Reactions(Part):
+    """Reactions of colours, at the walls of an axis or about the first so many particles."""
+
+    probabilities: tuple[Annotated[float, Field(gt=0, le=1)], ...] = Field(min_length=1)
+    axis: Annotated[int, Field(ge=0, le=2)] | None
+    centers: Whole
+    cutoff: Annotated[float, Field(ge=0)]
+
+
 class Output(Part):
     """A file of the run, and its columns beside the step."""
 
@@ -128,6 +137,7 @@ class System(Part):
     drives: tuple[Drive, ...]
     motion: dict[str, Any]
     solvent: Solvent | None
+    reactions: Reactions | None = None
     outputs: tuple[Output, ...]
     measures: tuple[Word, ...]
 
@@ -146,6 +156,9 @@ class System(Part):
         for wall in self.walls:
             if wall.axis >= self.box.dimensions or self.box.periodic[wall.axis]:
                 raise ValueError(f"a wall across axis {wall.axis}, which is periodic or none")
+        reacting = self.reactions.axis if self.reactions else None
+        if reacting is not None and reacting not in [wall.axis for wall in self.walls]:
+            raise ValueError(f"reactions at walls of axis {reacting}: it has none")
         return self
 
 

@@ -26,6 +26,7 @@ class Engine(ABC):
         plugin: whether LAMMPS needs our compiled styles for it.
         processes: whether it runs under mpirun.
         pair_potentials, wall_potentials, motions: classes of the parts that it knows.
+        reactions: whether it lets colours react.
     """
 
     name: ClassVar[str]
@@ -34,6 +35,7 @@ class Engine(ABC):
     pair_potentials: ClassVar[tuple[type[PairPotential], ...]]
     wall_potentials: ClassVar[tuple[type[WallPotential], ...]]
     motions: ClassVar[tuple[type[Motion], ...]]
+    reactions: ClassVar[bool] = False
 
     @abstractmethod
     def problems(self, system: System) -> Iterator[str]:
@@ -59,11 +61,13 @@ class Engine(ABC):
                     yield f"{potential!r} of a wall for {name}: engine {self.name} has no such"
         if not isinstance(system.motion, self.motions):
             yield f"{system.motion!r}: engine {self.name} has no such motion"
+        if system.reactions and not self.reactions:
+            yield f"{system.reactions!r}: engine {self.name} has no such"
 
     def needs_solvent(self, system: System) -> Iterator[str]:
         """A line where there is no fluid."""
         if system.solvent is None:
-            yield f"engine = {self.name!r}: it is a fluid, and the scene has none; use 'md'"
+            yield f"engine = {self.name!r}: it is a fluid, and the scene has none"
 
     def needs_slit_or_periodic(self, system: System) -> Iterator[str]:
         """A line for each axis that is neither periodic nor, across y, between two walls."""

@@ -9,7 +9,6 @@ import typer
 
 from lammps_inputs import SceneError, parse_assignment
 from lammps_inputs.deck import warnings
-from lammps_inputs.engines import DEFAULT
 from narrows.messages import say, user_errors, warn
 from narrows.progress import progress_of_runs
 from narrows.scene_options import ENGINES, SceneFile, SceneName, Settings, scene_fields
@@ -31,7 +30,7 @@ def sweep(
     ] = None,
     settings: Settings = None,
     file: SceneFile = None,
-    engine: Annotated[str, typer.Option(metavar=ENGINES, help="of all runs")] = DEFAULT,
+    engine: Annotated[str | None, typer.Option(metavar=ENGINES, help="of all runs")] = None,
     repeats: Annotated[
         int, typer.Option(metavar="R", min=1, help="runs of each point: seed, seed + 1, ...")
     ] = 1,
@@ -110,7 +109,7 @@ def _command(run: Run) -> list[str]:
     """The command line of a run, to be given again and again until it is finished."""
     default = {name: field.default for name, field in type(run.scene).model_fields.items()}
     settings = [
-        f"{name}={value}"
+        f"{name}={list(value) if isinstance(value, tuple) else value}"
         for name, value in run.scene.model_dump().items()
         if value != default[name] or name in CHANGEABLE
     ]

@@ -7,7 +7,6 @@ import MDAnalysis
 import numpy as np
 import pytest
 from MDAnalysis.coordinates.memory import MemoryReader
-from numpy.typing import NDArray
 
 from analysis.diffusivity import (
     AlongAxis,
@@ -23,7 +22,8 @@ from analysis.diffusivity.blocks import jackknife, quantile_95
 from analysis.diffusivity.local_fit import local_derivative
 from tests.diffusivity import walks
 
-Array = NDArray[np.float64]
+Array = walks.Array
+Make = Callable[[AlongAxis], Any]
 
 WALKERS = 100
 
@@ -33,7 +33,7 @@ def path() -> Array:
     return walks.walk(12 * WALKERS, 3000, seed=2)
 
 
-def coverage(path: Array, make: Callable[[Any], Any]) -> tuple[float, float]:
+def coverage(path: Array, make: Make) -> tuple[float, float]:
     """Fraction of bins, in the middle, whose 95 % bar holds the truth; and the median ratio."""
     inside, ratios = [], []
     for first in range(0, path.shape[1], WALKERS):
@@ -47,14 +47,14 @@ def coverage(path: Array, make: Callable[[Any], Any]) -> tuple[float, float]:
     return float(np.mean(inside)), float(np.median(ratios))
 
 
-ESTIMATORS = [
+ESTIMATORS: list[Make] = [
     lambda c: ColorDiffusivity(c, 0.3, 3.7, probability=0.3, reach=0.5, bin_width=0.05),
     lambda c: FirstPassageDiffusivity(c, 0.3, 3.7, reach=0.5, bin_width=0.05),
 ]
 
 
 @pytest.mark.parametrize("make", ESTIMATORS, ids=["color", "first passage"])
-def test_error_bars_cover_the_truth(path: Array, make: Callable[[Any], Any]) -> None:
+def test_error_bars_cover_the_truth(path: Array, make: Make) -> None:
     inside, ratio = coverage(path, make)
     assert inside > 0.88  # 12 walks of correlated bins: 0.95 +- 0.03
     assert ratio == pytest.approx(1, abs=0.07)
@@ -62,7 +62,7 @@ def test_error_bars_cover_the_truth(path: Array, make: Callable[[Any], Any]) -> 
 
 @pytest.mark.statistics
 @pytest.mark.parametrize("make", ESTIMATORS, ids=["color", "first passage"])
-def test_error_bars_cover_the_truth_in_95_of_100(make: Callable[[Any], Any]) -> None:
+def test_error_bars_cover_the_truth_in_95_of_100(make: Make) -> None:
     inside, ratio = coverage(walks.walk(60 * WALKERS, 3000, seed=5), make)
     assert inside == pytest.approx(0.95, abs=0.03)
     assert ratio == pytest.approx(1, abs=0.05)
@@ -181,7 +181,7 @@ def still(walkers: int = 5, frames: int = 40) -> AlongAxis:
     return AlongAxis(walks.universe(np.full((frames, walkers), 2.0)).atoms)
 
 
-BAD = [
+BAD: list[tuple[Callable[[], Any], str]] = [
     (lambda: AlongAxis(walks.universe(np.ones((3, 2))).atoms, "r"), "axis: 'r'; it must be"),
     (lambda: ColorDiffusivity(still(), 2, 1), "low: 2; it must be below high, 1"),
     (lambda: ColorDiffusivity(still(), 1, 3, probability=0), r"probability: 0; it must be in \(0"),
@@ -198,7 +198,7 @@ BAD = [
 
 
 @pytest.mark.parametrize(("make", "message"), BAD)
-def test_bad_input_is_named(make: Callable[[], object], message: str) -> None:
+def test_bad_input_is_named(make: Callable[[], Any], message: str) -> None:
     with pytest.raises(DiffusivityError, match=message):
         make()
 

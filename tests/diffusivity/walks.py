@@ -1,5 +1,7 @@
 """Smoluchowski walks with known D and F, as MDAnalysis Universes."""
 
+from typing import Any
+
 import MDAnalysis
 import numpy as np
 from MDAnalysis.coordinates.memory import MemoryReader
@@ -40,7 +42,7 @@ def walk(walkers: int, frames: int, seed: int, substeps: int = 5) -> Array:
     return path
 
 
-def universe(path: Array) -> MDAnalysis.Universe:
+def universe(path: Array) -> Any:
     """The walkers of `path` as atoms that move along z."""
     frames, walkers = path.shape
     positions = np.full((frames, walkers, 3), 5.0, dtype=np.float32)

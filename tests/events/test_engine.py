@@ -10,7 +10,7 @@ from srd_driver.events import EventError, HardSpheres, PairReactions, WallReacti
 from srd_driver.events.brute_force import BruteForce
 
 
-def slit(seed: int = 1, count: int = 200, reactions: Any = None) -> HardSpheres:
+def slit(seed: int = 1, count: int = 200, reactions: WallReactions | None = None) -> HardSpheres:
     return HardSpheres.fluid(count, [7.0, 6.5, 5.0], walls=(2,), reactions=reactions, seed=seed)
 
 
@@ -164,8 +164,7 @@ def test_chance_is_the_mean_label_over_lots() -> None:
         (PairReactions([0.1, 0.5], centers=[3, 8], cutoff=2.7), [6, 6, 6], ()),
     ):
         start = HardSpheres.fluid(90, box, walls, seed=1)
-        chances: list[Any] = []
-        total: Any = 0.0
+        total, chances = np.zeros((1, 1, 1)), []
         for seed in range(400):
             engine = HardSpheres(
                 start.positions, start.velocities, box, walls, reactions=reactions, seed=seed
@@ -205,7 +204,7 @@ def test_pairs_enter_the_cutoff_when_a_fine_clock_says_so() -> None:
     assert hits[1] >= entered
 
 
-BAD = [
+BAD: list[tuple[dict[str, Any], str]] = [
     ({"lengths": [10.0]}, "lengths: 1 of them; a box has 2 or 3"),
     ({"lengths": [10.0, 10.0, 2.9]}, r"lengths\[2\]: 2.9; a periodic axis must have at least"),
     ({"walls": (2,), "lengths": [10, 10, 1.0]}, "between walls it must exceed the diameter, 1"),
@@ -227,8 +226,10 @@ BAD = [
 
 @pytest.mark.parametrize(("changes", "message"), BAD)
 def test_bad_systems_are_refused(changes: dict[str, Any], message: str) -> None:
-    system: dict[str, Any] = {"positions": [[5.0, 5.0, 5.0]], "lengths": [10.0, 10.0, 10.0]}
-    system |= changes
+    system: dict[str, Any] = {
+        "positions": [[5.0, 5.0, 5.0]],
+        "lengths": [10.0, 10.0, 10.0],
+    } | changes
     system.setdefault("velocities", np.ones_like(system["positions"], dtype=float))
     with pytest.raises(EventError, match=message):
         HardSpheres(**system)

@@ -65,6 +65,7 @@ def test_equation_of_state_and_collision_rate(packing: float) -> None:
 
 
 @pytest.mark.parametrize("packing", [0.2, 0.35])
+@pytest.mark.statistics
 def test_contact_value_of_the_pair_correlation(packing: float) -> None:
     """g(sigma) from positions alone, with a quadratic through the first tenth."""
     engine = bulk(packing, 2000)
@@ -81,6 +82,7 @@ def test_contact_value_of_the_pair_correlation(packing: float) -> None:
     assert contact == pytest.approx((kolafa(packing) - 1) / (4 * packing), rel=0.012)
 
 
+@pytest.mark.statistics
 def test_wall_pressure_is_the_contact_density() -> None:
     """P = kBT rho at contact (a sum rule): momentum on the walls against the binned density."""
     engine = HardSpheres.fluid(
