@@ -23,7 +23,8 @@ def deck(
 ) -> None:
     """Write a folder that runs with `lmp -in in.lammps`."""
     with user_errors():
-        chosen, plugin = scene_of(scene, file, settings), lammps_engine_named(engine).plugin
+        chosen = scene_of(scene, file, settings)
+        plugin = lammps_engine_named(engine).needs_plugin(chosen.system)
         warn(warnings(chosen, engine))
         out.mkdir(parents=True, exist_ok=True)
         if any(out.iterdir()):
