@@ -204,7 +204,12 @@ class RunDirectory:
         Raises:
             RunDirectoryError: when the file is damaged.
         """
-        return read_progress(self.path) if is_begun(self.path) else None
+        if not is_begun(self.path):
+            return None
+        progress = read_progress(self.path)
+        if progress.finished and progress.step < self.clock.total_steps:
+            refuse(self.path, f"finished at step {progress.step} of {self.clock.total_steps}")
+        return progress
 
     def _checked(self, name: str) -> Path:
         """The path of an output, once it begins with what it held at the newest checkpoint.

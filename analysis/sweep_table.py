@@ -16,7 +16,7 @@ from typing import Any
 import numpy as np
 
 from analysis.analyze import SUMMARY, analyze, estimates, is_analysed
-from analysis.blocking import Estimate, mean_of_independent
+from analysis.estimate import Estimate, mean_of_independent
 from run_files import RunDirectoryError
 from run_files.progress import is_begun, read_progress
 from run_files.reading import read_json

@@ -11,17 +11,18 @@ from lammps_inputs.engines import engine_named, lammps_engine_named
 from lammps_inputs.engines.engine import LammpsEngine, Start
 from lammps_inputs.engines.lammps import table, trajectory
 from lammps_inputs.initial_state import initial_state
+from lammps_inputs.limits import memory_problems
 from lammps_inputs.scene import Scene, SceneError
 from lammps_inputs.system import Continuation, System
 
 
 def check_engine(scene: Scene, engine: str) -> None:
-    """Refuse what the engine of that name cannot do.
+    """Refuse what the engine of that name cannot do, or this machine's memory cannot hold.
 
     Raises:
         SceneError: naming the field or part, its value and what the engine allows.
     """
-    problems = list(engine_named(engine).problems(scene.system))
+    problems = [*memory_problems(scene.system), *engine_named(engine).problems(scene.system)]
     if problems:
         raise SceneError(problems)
 

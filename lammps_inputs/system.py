@@ -84,10 +84,8 @@ class Clock:
         """
         beats = max(2, round(sampling_interval / beat))
         outputs = max(1, math.ceil((equilibration + duration) / beat / beats - 1e-9))
-        look = next(
-            beats // looks
-            for looks in range(2, beats + 1)
-            if beats % looks == 0 and beats // looks <= LONGEST_LOOK
+        look = max(
+            look for look in range(1, LONGEST_LOOK + 1) if beats % look == 0 and beats // look >= 2
         )
         return cls(
             time_step=beat / steps_per_beat,

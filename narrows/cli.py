@@ -1,5 +1,8 @@
 """The `narrows` command line: thin, each command calls one function of a library package."""
 
+import os
+import sys
+
 import typer
 
 from narrows.commands.analyze import analyze
@@ -19,3 +22,17 @@ app = typer.Typer(
 for command in (deck, run, sweep, status, analyze, reproduce):
     app.command()(command)
 app.add_typer(lattice_app, name="lattice")
+
+
+def main() -> None:
+    """Run the command; a full disk or memory is one line, not a traceback."""
+    try:
+        try:
+            app()
+        finally:
+            sys.stdout.flush()
+    except OSError as error:  # nothing can be said on stdout, now or when Python ends
+        os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
+        sys.exit(f"narrows: cannot write the output: {error.strerror or error}")
+    except MemoryError:
+        sys.exit("narrows: not enough memory")

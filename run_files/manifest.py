@@ -8,6 +8,7 @@ from pydantic import Field, model_validator
 
 from run_files.manifest_0_1 import from_narrows_0_1
 from run_files.names import FileName
+from run_files.progress import is_begun
 from run_files.reading import Part, RunDirectoryError, checked, read_json, read_toml, refuse
 
 FORMAT = 2  # of the manifest; narrows 0.1 wrote no number
@@ -203,7 +204,8 @@ def read_manifest(directory: Path) -> Manifest:
     if (directory / SCENE).is_file():
         _require_same_scene(manifest, read_toml(directory / SCENE), path)
     variables = directory / VARIABLES
-    return _with_variables(manifest, variables) if variables.is_file() else manifest
+    by_hand = variables.is_file() and not is_begun(directory)  # narrows itself changes nothing
+    return _with_variables(manifest, variables) if by_hand else manifest
 
 
 def _require_same_scene(manifest: Manifest, scene: dict[str, Any], path: Path) -> None:

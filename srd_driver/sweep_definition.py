@@ -4,6 +4,7 @@ A point is one combination of the swept fields; its repeats differ by the seed a
 """
 
 import itertools
+import math
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
@@ -14,6 +15,8 @@ from run_files.sweep_file import NAME, SweepFile, SweptRun, is_sweep, read_sweep
 from srd_driver.engines import require_engine
 from srd_driver.errors import RunError
 from srd_driver.sweep import Run, is_finished
+
+MOST_RUNS = 100_000  # what one sweep.json holds, and a file system in one folder
 
 
 @dataclass(frozen=True)
@@ -48,6 +51,9 @@ def plan(
     """
     if "seed" in over and repeats > 1:
         raise SceneError.of_field("repeats", repeats, "must be 1 where the seed is swept")
+    count = math.prod(len(values) for values in over.values()) * repeats
+    if count > MOST_RUNS:
+        raise SceneError([f"{count:.3g} runs: a sweep has at most {MOST_RUNS}"])
     runs: dict[str, Run] = {}
     problems: dict[str, list[str]] = {}
     for values in itertools.product(*over.values()):

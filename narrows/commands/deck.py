@@ -6,7 +6,7 @@ from typing import Annotated
 import typer
 
 import lammps_plugin
-from lammps_inputs.deck import warnings, write_deck
+from lammps_inputs.deck import check_engine, warnings, write_deck
 from lammps_inputs.engines import DEFAULT, lammps_engine_named
 from narrows.messages import say, user_errors, warn
 from narrows.scene_options import DECKS, SceneFile, SceneName, Settings, scene_of
@@ -25,6 +25,7 @@ def deck(
     with user_errors():
         chosen = scene_of(scene, file, settings)
         plugin = lammps_engine_named(engine).needs_plugin(chosen.system)
+        check_engine(chosen, engine)
         warn(warnings(chosen, engine))
         out.mkdir(parents=True, exist_ok=True)
         if any(out.iterdir()):

@@ -74,8 +74,14 @@ def write_sweep(
 
 def write_analysed(path: Path, fields: Json, summary: Json, step: int = 20_000) -> None:
     write_manifest(path, "channel", channel(1), CHANNEL | fields)
-    (path / "progress.json").write_text(json.dumps({"step": step, "finished": step == 20_000}))
+    write_progress(path, step, finished=step == 20_000)
     (path / "summary.json").write_text(json.dumps(summary))
+
+
+def write_progress(path: Path, step: int, finished: bool) -> None:
+    checkpoint = f"checkpoint.{step}.restart"
+    progress = {"step": step, "finished": finished, "checkpoint": checkpoint}
+    (path / "progress.json").write_text(json.dumps(progress))
 
 
 def speed(value: float, error: float) -> Json:
@@ -142,7 +148,7 @@ def test_runs_are_analysed_and_one_that_cannot_be_is_named(tmp_path: Path) -> No
         path = tmp_path / name
         positions = np.array([[5.0, 5.0]]) + times * [0.03, 0.0]
         write_channel(path, positions, velocities, np.full(100, 0.01), total_steps=1000)
-        (path / "progress.json").write_text(json.dumps({"step": 1000, "finished": True}))
+        write_progress(path, 1000, finished=True)
     (tmp_path / "seed=2" / "observables.dat").write_text("# TimeStep\n")
     table = tabulate(tmp_path, 2)
     assert (table.finished, table.runs) == (1, 2)

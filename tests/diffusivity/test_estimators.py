@@ -79,8 +79,9 @@ def test_bayesian_profile_and_its_lags(path) -> None:
     assert abs(bias[1]) < 0.03
     assert results.errors_by_lag[2].mean() > 2 * results.errors_by_lag[1].mean()
     assert ((results.interval[0] < true) & (true < results.interval[1])).sum() >= 13  # of 15
-    # the posterior is about as wide as the curvature at its top says
-    assert results.error == pytest.approx(results.errors_by_lag[1], rel=0.4)
+    # about as wide as the curvature at its top says, but skewed next to the walls
+    inner = slice(2, -2)
+    assert results.error[inner] == pytest.approx(results.errors_by_lag[1][inner], rel=0.4)
 
 
 def test_likelihood_is_that_of_the_exponential_and_its_gradient() -> None:

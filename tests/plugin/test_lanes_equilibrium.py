@@ -5,9 +5,10 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from analysis.blocking import Estimate, mean
 from analysis.bond_order import bond_order
 from analysis.configurational_temperature import configurational_temperature
+from analysis.correlated_mean import mean
+from analysis.estimate import Estimate
 from analysis.kinetic_temperature import kinetic_temperature
 from analysis.lane_order import lane_order
 from tests.conftest import Run

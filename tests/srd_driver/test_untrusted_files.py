@@ -37,7 +37,8 @@ def half_way(tmp_path: Path) -> Path:
 
 
 def change(file: Path, **entries: Any) -> None:
-    file.write_text(json.dumps(json.loads(file.read_text()) | entries))
+    content = json.loads(file.read_text()) | entries
+    file.write_text(json.dumps({key: content[key] for key in content if key != "digest"}))
 
 
 def contents(directory: Path) -> dict[str, bytes]:
@@ -90,6 +91,7 @@ def test_runs_of_a_sweep_are_folders_of_it(name: str, tmp_path: Path) -> None:
     sweep_definition.store(sweep_definition.plan(tmp_path / "s", "channel", SHORT, {}, 1, "srd"))
     definition = tmp_path / "s" / "sweep.json"
     definition.write_text(definition.read_text().replace('"seed=1"', json.dumps(name)))
+    change(definition)
     before = sorted(tmp_path.rglob("*"))
     for read in (sweep_definition.read, lambda directory: tabulate(directory, 1)):
         with pytest.raises(RunDirectoryError, match="not the name of a folder") as error:

@@ -11,9 +11,10 @@ from functools import cache
 import numpy as np
 from matplotlib.figure import Figure
 
-from analysis import blocking
-from analysis.blocking import Estimate
-from analysis.flux import PolynomialFit, asep_form, current, fit_quality
+from analysis import correlated_mean
+from analysis.estimate import Estimate
+from analysis.flux import asep_form, current
+from analysis.line_fit import PolynomialFit, fit_polynomial
 from analysis.settling import settling_series
 from lammps_inputs import Scene
 from lammps_inputs.scenes.poiseuille import Poiseuille
@@ -92,7 +93,10 @@ def homogeneous(directories: Directories, where: Point, window: tuple[float, flo
     rest = np.concatenate([run.rest[part] for run, part in zip(runs, used, strict=True)])
     moving = np.concatenate([run.co_moving[part] for run, part in zip(runs, used, strict=True)])
     return Homogeneous(
-        where, blocking.mean(rest), blocking.mean(moving), blocking.mean(rest - moving)
+        where,
+        correlated_mean.mean(rest),
+        correlated_mean.mean(moving),
+        correlated_mean.mean(rest - moving),
     )
 
 
@@ -135,7 +139,7 @@ class Law:
         errors = np.array(self.speed_errors)
         drawn = self.speed(self.densities) + scatter * errors * rng.normal(size=len(errors))
         again = [Estimate(float(v), float(e)) for v, e in zip(drawn, errors, strict=True)]
-        intercept, slope = fit_quality(self.densities, again).coefficients
+        intercept, slope = fit_polynomial(self.densities, again).coefficients
         coupling, permeability = (
             _number(one) + rng.normal() * (one.error or 0.0)
             for one in (self.coupling.coefficients[0], self.permeability)
@@ -158,10 +162,10 @@ def homogeneous_law(directories: Directories, quality: Quality) -> Law:
     flow = table["mean_velocity_x"][run.sampled(table.steps)]
     return Law(
         tuple(densities),
-        fit_quality(densities, [one.rest for one in found]),
+        fit_polynomial(densities, [one.rest for one in found]),
         tuple(one.rest.error or 0.0 for one in found),
-        fit_quality(densities, [one.coupling for one in found], degree=0),
-        blocking.mean(flow).scaled(1 / (fluid.density * fluid.gravity)),
+        fit_polynomial(densities, [one.coupling for one in found], degree=0),
+        correlated_mean.mean(flow).scaled(1 / (fluid.density * fluid.gravity)),
     )
 
 
@@ -249,8 +253,8 @@ def _early_results(
 ) -> list[Result]:
     intercept, slope = law.speed.coefficients
     everything = f"100 x 10, t from 12 to 300, rho up to 0.025; {law.speed.quality}"
-    moving = fit_quality(_densities(early), [one.co_moving for one in early])
-    parabola = fit_quality(_densities(early), [one.rest for one in early], degree=2)
+    moving = fit_polynomial(_densities(early), [one.co_moving for one in early])
+    parabola = fit_polynomial(_densities(early), [one.rest for one in early], degree=2)
     results = [
         compared(NUMBER, "c of v = c rho + c' at rest [a0^3/t0]", slope, REST_SLOPE, everything),
         compared(
@@ -287,7 +291,7 @@ def _early_results(
     ]
     shorter = {one.where.density: one.rest for one in early}
     gaps = [difference(one.rest, shorter[one.where.density]) for one in long]
-    level = fit_quality(_densities(long), gaps, degree=0)
+    level = fit_polynomial(_densities(long), gaps, degree=0)
     results.append(
         claimed(
             NUMBER,
@@ -302,10 +306,10 @@ def _early_results(
 
 
 def _late_results(late: Sequence[Homogeneous]) -> list[Result]:
-    line = fit_quality(_densities(late), [one.rest for one in late])
+    line = fit_polynomial(_densities(late), [one.rest for one in late])
     dense = [one for one in late if one.where.density >= ZIGZAG]
-    bend = fit_quality(_densities(dense), [one.rest for one in dense])
-    below = fit_quality(_densities(dense), [_below(one) for one in dense], degree=0)
+    bend = fit_polynomial(_densities(dense), [one.rest for one in dense])
+    below = fit_polynomial(_densities(dense), [_below(one) for one in dense], degree=0)
     return [
         measured(
             NUMBER,

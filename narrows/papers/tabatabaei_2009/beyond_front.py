@@ -8,7 +8,7 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from numpy.typing import NDArray
 
-from analysis.blocking import Estimate, mean_of_independent
+from analysis.estimate import Estimate, mean_of_independent
 from lammps_inputs.scenes.channel import Channel
 from narrows.papers.drawing import COLOURS, PAPER, shades
 from narrows.papers.figure import Column, Directories, Outcome, PaperFigure, Quality

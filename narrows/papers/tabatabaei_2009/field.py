@@ -2,9 +2,9 @@
 
 import numpy as np
 
-from analysis import blocking, flow
-from analysis.blocking import Estimate
+from analysis import correlated_mean, flow
 from analysis.depletion import wall_depletion
+from analysis.estimate import Estimate
 from lammps_inputs.scenes.channel import Channel
 from lammps_inputs.viscosity import viscosity
 from narrows.papers.drawing import SPEED, one_panel, paper_line, paper_remark, points
@@ -55,7 +55,7 @@ def _reynolds(directories: Directories, where: Point) -> Estimate:
     scene = where.scenes[0]
     nu = viscosity(scene.density, scene.collision_time, scene.angle)
     scale = flow.reynolds_number(1.0, scene.width, nu)
-    return blocking.mean(np.concatenate(velocities)).scaled(scale)
+    return correlated_mean.mean(np.concatenate(velocities)).scaled(scale)
 
 
 def _figure_4_9(directories: Directories, quality: Quality) -> Outcome:

@@ -5,7 +5,7 @@ from collections.abc import Sequence
 
 import numpy as np
 
-from analysis.blocking import Estimate
+from analysis.estimate import Estimate
 from narrows.papers.drawing import (
     FRACTION,
     SPEED,

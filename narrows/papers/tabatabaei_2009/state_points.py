@@ -13,8 +13,8 @@ from typing import Any
 import numpy as np
 from numpy.typing import ArrayLike
 
-from analysis import RunDirectory, blocking
-from analysis.blocking import Estimate
+from analysis import RunDirectory, correlated_mean
+from analysis.estimate import Estimate
 from analysis.line_fit import fit_polynomial
 from analysis.settling import SettlingSeries, settling_series
 from lammps_inputs import Scene
@@ -103,7 +103,7 @@ def speed(directories: Directories, where: Point) -> Speed:
     moving = np.concatenate([series.co_moving[series.used] for series, _ in runs])
     rest = np.concatenate([series.rest[series.used] for series, _ in runs])
     off = math.sqrt(sum(square for _, square in runs) / len(runs))
-    return Speed(where, blocking.mean(moving), blocking.mean(rest), off)
+    return Speed(where, correlated_mean.mean(moving), correlated_mean.mean(rest), off)
 
 
 def scenes_of(all_points: Iterable[Point]) -> list[Scene]:
@@ -122,5 +122,4 @@ def difference(one: Estimate, other: Estimate) -> Estimate:
 
 def fit(x: ArrayLike, y: Sequence[Estimate], degree: int = 1) -> list[Estimate]:
     """Coefficients of 1, x, x^2, ... of a polynomial through measured points."""
-    values, errors = [one.value for one in y], [one.error for one in y]
-    return fit_polynomial(x, np.array(values, float), np.array(errors, float), degree)
+    return list(fit_polynomial(x, y, degree).coefficients)

@@ -8,7 +8,7 @@ from collections.abc import Iterable, Sequence
 import numpy as np
 from matplotlib.axes import Axes
 
-from analysis.blocking import Estimate
+from analysis.estimate import Estimate
 from analysis.line_fit import weighted_mean
 from narrows.papers.drawing import paper_line
 from narrows.papers.figure import Column

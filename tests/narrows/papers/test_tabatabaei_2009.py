@@ -6,7 +6,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from analysis.blocking import Estimate
+from analysis.estimate import Estimate
 from lammps_inputs.deck import check_engine
 from lattice.shocks import end_rates, hopping_rates, random_walk_residuals
 from narrows.papers.figure import Quality
