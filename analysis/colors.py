@@ -6,8 +6,8 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from analysis.blocking import Estimate
 from analysis.diffusivity.blocks import jackknife
+from analysis.estimate import Estimate
 from analysis.run_directory import RunDirectory
 from run_files import RunDirectoryError
 from run_files.manifest import Reactions

@@ -5,7 +5,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from lammps_inputs.system import Box, System
+from lammps_inputs.system import Box, Continuation, System
 
 Array = NDArray[np.float64]
 
@@ -39,6 +39,8 @@ def initial_state(system: System, seed: int) -> InitialState:
     if system.placement:
         colloid_positions = system.placement.positions(system.box, system.species, seed)
     colloid_velocities = random.normal(size=(system.particles, dimensions)) / np.sqrt(masses)
+    if isinstance(system.placement, Continuation):
+        colloid_velocities = system.placement.velocities(system.box, system.species)
 
     fluid = system.solvent
     fluid_positions = _positions_outside(

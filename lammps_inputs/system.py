@@ -7,7 +7,7 @@ t0. A scene builds its `System` from them; an engine refuses the parts that it d
 import math
 from collections.abc import Iterator
 from dataclasses import dataclass
-from typing import Any, Literal, Protocol, Self
+from typing import Any, Literal, Protocol, Self, runtime_checkable
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -238,9 +238,6 @@ class Events:
     """
 
 
-Motion = VelocityVerlet | Events
-
-
 @dataclass(frozen=True)
 class Reactions:
     """Colours A and B that no particle feels: A turns to B at one surface, B to A at another.
@@ -259,6 +256,83 @@ class Reactions:
     axis: int | None = None
     centers: int = 0
     cutoff: float = 0.0
+
+
+@dataclass(frozen=True)
+class Isokinetic:
+    """Gauss's thermostat: the kinetic energy is constant (delhommelle-2005, 1 to 3).
+
+    Attributes:
+        temperature: [kBT].
+        directions: of which the kinetic energy is.
+        shear_rate: dv_x/dy of a SLLOD flow, the kinetic energy then relative to it [1/t0].
+    """
+
+    temperature: float
+    directions: Literal["xyz", "x", "y", "z"] = "xyz"
+    shear_rate: float = 0.0
+
+
+@dataclass(frozen=True)
+class Configurational:
+    """The temperature of the configurations is held, velocities are free (delhommelle-2005, 4, 5).
+
+    Attributes:
+        temperature: [kBT].
+        damping: Q of (5).
+        shear_rate: dv_x/dy of a SLLOD flow [1/t0].
+    """
+
+    temperature: float
+    damping: float = 10.0
+    shear_rate: float = 0.0
+
+
+@dataclass(frozen=True)
+class Langevin:
+    """Friction -m friction v against the laboratory, and its noise.
+
+    Attributes:
+        temperature: [kBT].
+        friction: [1/t0].
+    """
+
+    temperature: float
+    friction: float
+
+
+@dataclass(frozen=True)
+class DissipativePairs:
+    """The thermostat of dissipative particle dynamics: friction and noise of pairs.
+
+    The friction of a pair is friction (1 - r/cutoff)^2 times its approach; momentum is conserved.
+
+    Attributes:
+        temperature: [kBT].
+        friction: [m_f/t0].
+        cutoff: [a0].
+    """
+
+    temperature: float
+    friction: float
+    cutoff: float
+
+
+Thermostatted = Isokinetic | Configurational | Langevin | DissipativePairs
+Motion = VelocityVerlet | Thermostatted | Events
+
+
+@dataclass(frozen=True)
+class Rest:
+    """A time at rest before step 0, without drives and outputs, the kinetic energy constant.
+
+    Attributes:
+        steps: of the clock's time step.
+        temperature: [kBT].
+    """
+
+    steps: int
+    temperature: float
 
 
 @dataclass(frozen=True)
@@ -291,6 +365,17 @@ class Placement(Protocol):
 
     def positions(self, box: Box, species: tuple[Species, ...], seed: int) -> Array:
         """Centres of all species, one after the other, (N, d) [a0]."""
+
+
+@runtime_checkable
+class Continuation(Placement, Protocol):
+    """A placement with velocities, as another run left the particles."""
+
+    def velocities(self, box: Box, species: tuple[Species, ...]) -> Array:
+        """Velocities of all species, one after the other, (N, d) [a0/t0]."""
+
+    def problems(self, box: Box, species: tuple[Species, ...]) -> Iterator[str]:
+        """Why that run cannot be gone on from, in one line."""
 
 
 Kind = Literal["trajectory", "table", "profile"]
@@ -332,6 +417,7 @@ class System:
     Attributes:
         species: particles, none for a pure fluid; atom types of LAMMPS from 1 on, in this order.
         placement: of the species at the start; None without any.
+        rest: before the run; None: it begins as the species are placed.
         solvent: None: the species move in vacuum.
         outputs: what the run writes.
         measures: what `narrows analyze` makes of it, names of `analysis/measures`.
@@ -348,6 +434,7 @@ class System:
     walls: tuple[Wall, ...] = ()
     drives: tuple[Drive, ...] = ()
     motion: Motion = VelocityVerlet()
+    rest: Rest | None = None
     solvent: Solvent | None = None
     reactions: Reactions | None = None
 
@@ -355,6 +442,11 @@ class System:
     def particles(self) -> int:
         """Number of particles of all species."""
         return sum(species.count for species in self.species)
+
+    @property
+    def shear_rate(self) -> float:
+        """dv_x/dy that the motion imposes on a sheared periodic box [1/t0]."""
+        return float(getattr(self.motion, "shear_rate", 0.0))
 
     @property
     def masses(self) -> Array:

@@ -95,6 +95,13 @@ class Drive(Part):
     variable: Word
 
 
+class Rest(Part):
+    """A time at rest before step 0."""
+
+    steps: Whole
+    temperature: Positive
+
+
 class Solvent(Part):
     """The MPC fluid; viscosity_theory is null where kinetic theory has none [a0^2/t0]."""
 
@@ -136,6 +143,7 @@ class System(Part):
     walls: tuple[Wall, ...]
     drives: tuple[Drive, ...]
     motion: dict[str, Any]
+    rest: Rest | None = None
     solvent: Solvent | None
     reactions: Reactions | None = None
     outputs: tuple[Output, ...]

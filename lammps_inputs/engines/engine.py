@@ -23,10 +23,11 @@ class Engine(ABC):
 
     Attributes:
         name: on the command line.
-        plugin: whether LAMMPS needs our compiled styles for it.
+        plugin: whether LAMMPS needs our compiled styles for each of its decks.
         processes: whether it runs under mpirun.
         pair_potentials, wall_potentials, motions: classes of the parts that it knows.
         reactions: whether it lets colours react.
+        rests: whether it can let a system rest before the run.
     """
 
     name: ClassVar[str]
@@ -36,6 +37,7 @@ class Engine(ABC):
     wall_potentials: ClassVar[tuple[type[WallPotential], ...]]
     motions: ClassVar[tuple[type[Motion], ...]]
     reactions: ClassVar[bool] = False
+    rests: ClassVar[bool] = False
 
     @abstractmethod
     def problems(self, system: System) -> Iterator[str]:
@@ -44,6 +46,10 @@ class Engine(ABC):
     def warnings(self, system: System) -> Iterator[str]:
         """What it does inaccurately, one line each."""
         yield from ()
+
+    def needs_plugin(self, system: System) -> bool:
+        """Whether LAMMPS needs our compiled styles for a system."""
+        return self.plugin
 
     def seeds(self, seed: int, step: int) -> dict[str, int]:
         """Its random seeds, by name, for a start at a step."""
@@ -63,6 +69,8 @@ class Engine(ABC):
             yield f"{system.motion!r}: engine {self.name} has no such motion"
         if system.reactions and not self.reactions:
             yield f"{system.reactions!r}: engine {self.name} has no such"
+        if system.rest and not self.rests:
+            yield f"{system.rest!r}: engine {self.name} has no rest before the run"
 
     def needs_solvent(self, system: System) -> Iterator[str]:
         """A line where there is no fluid."""
@@ -97,6 +105,10 @@ class LammpsEngine(Engine):
     @abstractmethod
     def motion(self, system: System) -> Iterator[str]:
         """What moves and pulls the particles, and walls and drives."""
+
+    def preparation(self, system: System, start: Start) -> Iterator[str]:
+        """What comes before step 0."""
+        yield from ()
 
     def solvent(self, system: System, start: Start) -> Iterator[str]:
         """The fluid."""

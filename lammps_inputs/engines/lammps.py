@@ -28,22 +28,25 @@ def groups(system: System) -> Iterator[str]:
         yield f"group {particle_group(system)} type {' '.join(map(str, types.values()))}"
 
 
-def pairs(system: System) -> Iterator[str]:
-    """The pair style of the species, which `one_pair_style` has checked."""
+def pairs(system: System, overlay: str = "") -> Iterator[str]:
+    """The pair style of the species, which `one_pair_style` has checked; another laid over it."""
     types = system.types()
     between = system.particle_interactions()
     for interaction in between:
         yield f"# {interaction.potential.title} {_between(interaction)}"
     first = between[0].potential
     cutoff = max(interaction.potential.cutoff for interaction in between)
-    yield f"pair_style {first.pair_style} {cutoff!r}"
+    arguments = getattr(first, "style_arguments", f" {cutoff!r}")
+    style = f"{first.pair_style}{arguments}"
+    yield f"pair_style hybrid/overlay {style} {overlay}" if overlay else f"pair_style {style}"
+    named = f" {first.pair_style}" if overlay else ""
     missing = {(a, b) for a in types.values() for b in types.values() if a <= b}
     for interaction in between:
         low, high = sorted((types[interaction.first], types[interaction.second]))
         missing.discard((low, high))
-        yield interaction.potential.pair_coeff(f"{low} {high}")
+        yield interaction.potential.pair_coeff(f"{low} {high}{named}")
     for low, high in sorted(missing):
-        yield first.no_pair_coeff(f"{low} {high}")
+        yield first.no_pair_coeff(f"{low} {high}{named}")
 
 
 def _between(interaction: Interaction) -> str:
@@ -115,6 +118,8 @@ def data_header(system: System, title: str, atoms: int, types: int) -> Iterator[
     for axis, (name, size) in enumerate(zip("xyz", sizes, strict=True)):
         low, high = (0.0, size) if axis < system.box.dimensions else (-0.5, 0.5)
         yield f"{low!r} {high!r} {name}lo {name}hi\n"
+    if system.shear_rate:
+        yield "0.0 0.0 0.0 xy xz yz\n"
 
 
 def particle_data(system: System, state: InitialState, title: str) -> Iterable[str]:

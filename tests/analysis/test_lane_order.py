@@ -1,4 +1,3 @@
-from collections.abc import Sequence
 from typing import Any
 
 import numpy as np
@@ -13,7 +12,7 @@ COLOURS = np.arange(200) % 2
 
 
 def brute_force(
-    positions: Array, colours: NDArray[Any], lengths: Sequence[float], axes: list[int]
+    positions: Array, colours: NDArray[Any], lengths: list[float], axes: list[int]
 ) -> Array:
     """Every pair of every frame, delhommelle-2005, II."""
     frames, particles, dimension = positions.shape

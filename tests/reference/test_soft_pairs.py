@@ -4,12 +4,10 @@ from collections.abc import Callable
 
 import numpy as np
 import pytest
-from numpy.typing import NDArray
 
-from lammps_inputs.soft_potentials import SoftDisk, WeeksChandlerAndersen
+from lammps_inputs.potentials.soft_disk import SoftDisk
+from lammps_inputs.potentials.weeks_chandler_andersen import WeeksChandlerAndersen
 from srd_driver.reference.soft_pairs import SoftPairs
-
-Array = NDArray[np.float64]
 
 POTENTIALS = [SoftDisk(sigma=1.1, epsilon=0.8), WeeksChandlerAndersen(sigma=1.2, epsilon=1.3)]
 LENGTHS = {2: [5.0, 6.0], 3: [5.0, 6.0, 5.5]}
@@ -29,7 +27,7 @@ def fluid(dimension: int, count: int = 40) -> np.ndarray:
 
 
 def derivative(
-    function: Callable[[Array], float], positions: np.ndarray, step: float = 1e-5
+    function: Callable[[np.ndarray], float], positions: np.ndarray, step: float = 1e-5
 ) -> np.ndarray:
     """By central differences, (N, D)."""
     slope = np.zeros_like(positions)
