@@ -250,7 +250,7 @@ template <int D> std::vector<Pull<D>> MpcState<D>::restart(const char *buffer)
   for (std::int64_t n = 0; n < header.pulls; ++n) {
     Pull<D> pull;
     read(pull);
-    if (header.processes == comm->nprocs && pull.process == comm->me) pulls.push_back(pull);
+    if (header.processes == comm->nprocs) pulls.push_back(pull);
   }
   solver_.reset(header.fluid.collisions, lower(), upper());
   for (std::int64_t n = 0; n < header.fluid.particles; ++n) {

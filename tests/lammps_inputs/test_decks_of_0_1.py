@@ -64,7 +64,7 @@ def _with_lists_at_collisions(lines: list[str], case: dict[str, Any]) -> list[st
         f"neigh_modify delay 0 every {every} check no",
     ]
     if case["scene"] == "channel":
-        scene = make_scene("channel", **case["fields"])
+        scene: Any = make_scene("channel", **case["fields"])
         mass = math.pi * scene.colloid_radius**2 * scene.density
         skin = max(0.5, 2 * scene.collision_time * (1 + 10 / math.sqrt(mass)))
         lines = [line.replace("neighbor 0.5 bin", f"neighbor {skin:.6g} bin") for line in lines]
