@@ -82,6 +82,13 @@ def drives(system: System) -> Iterator[str]:
             yield f"fix {name} {drive.target} gravity ${{{variable}}} vector {direction}"
 
 
+def rotational_temperature(system: System) -> Iterator[str]:
+    """The variable of that name, in 3D: a third of twice the energy of rotation of each."""
+    yield f"compute rotation {particle_group(system)} erotate/sphere"
+    rotating = sum(species.count for species in system.species if species.inertia)
+    yield f"variable rotational_temperature equal 2*c_rotation/{3 * rotating}"
+
+
 def window(system: System) -> str:
     """Nevery, Nrepeat and Nfreq of an average over each sampling interval."""
     look = system.clock.look_steps

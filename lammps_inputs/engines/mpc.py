@@ -147,9 +147,7 @@ class Mpc(LammpsEngine):
             yield f"variable mean_velocity_z equal {momentum}/(f_solvent[4]+mass({group}))"
             yield "variable fluid_velocity_x equal f_solvent[1]/f_solvent[4]"
             yield "variable fluid_velocity_z equal f_solvent[3]/f_solvent[4]"
-            yield f"compute rotation {group} erotate/sphere"
-            rotating = sum(each.count for each in system.species if each.inertia)
-            yield f"variable rotational_temperature equal 2*c_rotation/{3 * rotating}"
+            yield from lammps.rotational_temperature(system)
 
     def write(self, system: System, state: InitialState, title: str, directory: Path) -> None:
         with (directory / "state.data").open("w", encoding="utf-8") as file:

@@ -29,7 +29,7 @@ CASES: dict[str, dict[str, Any]] = {
 def test_deck_driver_and_resumed_run_are_the_same(
     fields: dict[str, Any], tmp_path: Path, command: Run
 ) -> None:
-    """To the last bit, friction and fluctuations included; on two processes to rounding at first."""
+    """To the last bit, with friction and fluctuations; on two processes to rounding at first."""
     scene = make_scene("claylike", **fields)
     for ranks in (1, 2):
         deck = tmp_path / f"lmp{ranks}"
@@ -76,6 +76,17 @@ def test_a_sweep_over_volume_fractions(tmp_path: Path) -> None:
     )
     assert run_all(sweep_definition.store(swept).runs, jobs=2) == []
     assert len(tabulate(tmp_path, jobs=1).rows) == 2
+
+
+def test_fix_srd_runs_the_reflecting_suspension(tmp_path: Path) -> None:
+    fast = {"thermostat": "layer", "potential": "hertz", "md_steps_per_collision": 30}
+    scene = make_scene("claylike", **REFLECTION | fast | {"duration": 3})
+    with Simulation(scene, "srd", tmp_path) as run:
+        run.finish()
+    table = RunDirectory(tmp_path).table()
+    alone = scene.system.drives[0].magnitude * scene.system.clock.end / 3  # a third of the mass
+    assert abs(table["mean_velocity_z"]).max() < 0.1 * alone, "fix srd keeps momentum roughly"
+    assert abs(table["fluid_temperature"].mean() - 1) < 0.05
 
 
 REFUSALS = {
