@@ -166,7 +166,13 @@ template <int D> void FixMPC<D>::restart(char *buffer)
     const auto header = mpc::read_restart_header<D>(buffer, given_.seed);
     make_solver(static_cast<double>(header.fluid.particles));
     check_processes();
-    colloids_.pulls = state_->restart(buffer);
+    auto &pulls = colloids_.pulls;
+    pulls = state_->restart(buffer);
+    if (couples_every_step())    // images of a colloid are of one process, atoms may change theirs
+      pulls.erase(std::remove_if(pulls.begin(), pulls.end(),
+                                 [&](const auto &pull) { return pull.process != comm->me; }),
+                  pulls.end());
+    restored_ = true;
   });
 }
 
@@ -198,6 +204,12 @@ template <int D> void FixMPC<D>::setup_pre_reverse(int, int)
   if (couples_every_step()) add_forces();
 }
 
+template <int D> void FixMPC<D>::setup(int)
+{
+  if (restored_ && coupling() && !couples_every_step()) colloids_.repeat_forces();
+  restored_ = false;
+}
+
 template <int D> void FixMPC<D>::initial_integrate(int)
 {
   if (!open_) {
@@ -226,10 +238,12 @@ template <int D> void FixMPC<D>::end_of_step()
     colloids_.see_velocities();
   guarded([&] { solver_->end_interval(colloids_.seen()); });
   open_ = false;
-  if (couples_every_step())
+  if (couples_every_step()) {
     colloids_.remember_pulls();
-  else if (coupling())
+  } else if (coupling()) {
     colloids_.apply_impulses(coupling()->impulses());
+    colloids_.remember_forces();
+  }
   if (given_.momentum_every > 0 && solver_->collisions() % given_.momentum_every == 0)
     remove_momentum();
   if (coupling()) colloids_.see(interval_);

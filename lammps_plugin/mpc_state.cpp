@@ -243,7 +243,7 @@ template <int D> std::vector<Pull<D>> MpcState<D>::restart(const char *buffer)
   mpc::read_restart<D, Pull<D>>(
       buffer, given_.seed,
       [&](const Pull<D> &pull) {
-        if (header.processes == comm->nprocs && pull.process == comm->me) pulls.push_back(pull);
+        if (header.processes == comm->nprocs) pulls.push_back(pull);
       },
       [&](const Particle<D> &particle) { solver_.add(particle); });
   solver_.count();

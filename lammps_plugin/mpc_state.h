@@ -31,7 +31,7 @@ template <int D> class MpcState : protected Pointers {
   void save(const std::string &file);
 
   void write_restart(FILE *, const std::vector<Pull<D>> &of_all);
-  std::vector<Pull<D>> restart(const char *);    // this process's, of as many as there were
+  std::vector<Pull<D>> restart(const char *);    // of all, if they were as many processes
 
  private:
   std::array<int, D> bound(const double *corner) const;

@@ -142,7 +142,7 @@ class Suspension:
         """Move it in numpy."""
         time = self.tau / STEPS
         for collision in range(collisions):
-            fluid = self.fluid_positions, self.fluid_velocities
+            fluid = (self.fluid_positions, self.fluid_velocities)
             stream(*fluid, self.field, self.tau, self.boundaries)
             self.boundaries.wrap(self.fluid_positions)
             for _ in range(STEPS):
@@ -171,11 +171,10 @@ class Suspension:
             *(self.positions, self.velocities, self.spins),
             *(self.radius * each, self.mass * each, inertia * each),
         )
-        fluid, time = (self.fluid_positions, self.fluid_velocities), self.tau
-        assert self.coupling in ("entry", "nearest")
+        fluid = (self.fluid_positions, self.fluid_velocities)
         placement: Placement = "entry" if self.coupling == "entry" else "nearest"
         momentum, angular = reflect(
-            *fluid, spheres, placement, time, 1.0, self.field, self.boundaries, random
+            *fluid, spheres, placement, self.tau, 1.0, self.field, self.boundaries, random
         )
         self.velocities += momentum / self.mass
         self.spins += angular / inertia
@@ -192,9 +191,9 @@ class Suspension:
         shift = grid_shift(random, self.dimensions)
         shape = grid_shape(self.box, self.periodic)
         cells = Cells.sort(positions, shift, shape, self.periodic)
-        fluid = np.bincount(cells.numbers[: self.fluid_positions.shape[1]], minlength=cells.count)
-        occupation = fluid.astype(float)
-        filled = virtual_particles(self.boundaries, cells, shift, occupation, 1.0, random)
+        of_fluid = cells.numbers[: self.fluid_positions.shape[1]]
+        fluid = np.bincount(of_fluid, minlength=cells.count).astype(float)
+        filled = virtual_particles(self.boundaries, cells, shift, fluid, 1.0, random)
         mean = cell_coupling.mean_velocity(velocities, masses, cells, *filled)
         collide(velocities, cells, mean, 90, "coordinate_axes", random)
         if self.tstat == "monte_carlo":
