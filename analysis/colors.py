@@ -6,8 +6,8 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from analysis.blocking import Estimate
 from analysis.diffusivity.blocks import jackknife
+from analysis.estimate import Estimate
 from analysis.run_directory import RunDirectory
 from run_files import RunDirectoryError
 from run_files.manifest import Reactions
@@ -133,4 +133,4 @@ def block_mean(values: Array) -> Estimate:
 def estimate(statistic: Callable[..., Array], *sums: Array) -> Estimate:
     """A number from blocks, with its jackknife error."""
     value, error = jackknife(statistic, *sums)
-    return Estimate(float(value), float(error))
+    return Estimate(float(value), float(error), freedom=len(sums[0]) - 1)

@@ -1,0 +1,86 @@
+"""Profiles of D from runs, by colours and by likelihood, and numbers made of them."""
+
+import csv
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from analysis import RunDirectory
+from analysis.analyze import summary_of
+from analysis.diffusivity import AlongAxis, BayesianDiffusivity, PairDistance
+from analysis.estimate import Estimate
+
+Array = NDArray[np.float64]
+
+CONFIDENCE_95 = 2.09  # errors, of 20 blocks
+
+
+@dataclass(frozen=True)
+class Profile:
+    """D at positions with its standard error, all (n,)."""
+
+    place: Array
+    diffusivity: Array
+    error: Array
+
+    def mean(self, low: float, high: float, spacing: float) -> Estimate:
+        """Weighted mean where low <= |place| <= high.
+
+        Values within `spacing` of each other share their data, so that the error is that of so
+        many fewer of them.
+        """
+        chosen = (np.abs(self.place) >= low) & (np.abs(self.place) <= high)
+        d, error = self.diffusivity[chosen], self.error[chosen]
+        step = float(np.diff(self.place).min())
+        together = max(1.0, spacing / step)
+        weight = error**-2
+        value = float(np.sum(weight * d) / weight.sum())
+        return Estimate(value, float(np.sqrt(min(together, len(d)) / weight.sum())))
+
+
+def by_colors(run: RunDirectory) -> dict[float, Profile]:
+    """The profile of each reaction probability, from the table that analysis writes."""
+    summary_of(run.path)
+    with (run.path / "diffusivity.csv").open(encoding="utf-8") as file:
+        header, *rows = csv.reader(file)
+    assert header[2:] == ["density", "diffusivity", "error"], header
+    numbers = np.array(rows, dtype=float)
+    return {
+        float(p): Profile(*numbers[numbers[:, 0] == p][:, [1, 3, 4]].T)
+        for p in np.unique(numbers[:, 0])
+    }
+
+
+def across(run: RunDirectory, bins: int, lags: tuple[int, ...], lag: int) -> Profile:
+    """D(z) by likelihood, z from the middle."""
+    atoms = run.universe().atoms
+    width = run.box.sizes[2]
+    radius = run.species().radius
+    return _likelihood(
+        BayesianDiffusivity(
+            AlongAxis(atoms, "z"), radius, width - radius, bins=bins, lags=lags, lag=lag, samples=0
+        ),
+        run,
+        width / 2,
+    )
+
+
+def about_particles(
+    run: RunDirectory, centers: int, high: float, bins: int, lags: tuple[int, ...], lag: int
+) -> Profile:
+    """D(r) by likelihood."""
+    atoms = run.universe().atoms
+    pairs = PairDistance(atoms, atoms[:centers])
+    contact = 2 * run.species().radius
+    return _likelihood(
+        BayesianDiffusivity(pairs, contact, high, bins=bins, lags=lags, lag=lag, samples=0),
+        run,
+        0.0,
+    )
+
+
+def _likelihood(estimator: BayesianDiffusivity, run: RunDirectory, middle: float) -> Profile:
+    first = -(-run.equilibration_steps // run.clock.sample_steps)
+    results = estimator.run(start=first).results
+    return Profile(results.positions - middle, results.diffusivity, results.error)
