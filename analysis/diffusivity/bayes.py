@@ -152,10 +152,10 @@ def most_likely(
 class BayesianDiffusivity(AnalysisBase):  # type: ignore[misc]
     """D at the faces between bins by likelihood, for several lags, with the posterior of one.
 
-    Transitions are counted over windows that do not overlap. The prior has log D a random walk along
-    the coordinate, as rough as the data make most probable, and the measured populations; `emcee`
-    samples the posterior at the chosen lag. Short lags see motion that is not yet diffusive and the
-    width of the bins, long ones wash the profile out: `results.by_lag` shows both.
+    Transitions are counted over windows that do not overlap. The prior has log D a random walk
+    along the coordinate, as rough as the data make most probable, and the measured populations;
+    `emcee` samples the posterior at the chosen lag. Short lags see motion that is not yet diffusive
+    and the width of the bins, long ones wash the profile out: `results.by_lag` shows both.
 
     Args:
         coordinate: `AlongAxis` or `PairDistance`.
@@ -257,7 +257,7 @@ class BayesianDiffusivity(AnalysisBase):  # type: ignore[misc]
         self._sample(posteriors[chosen], profiles[chosen], errors[chosen])
 
     def _plateau(self) -> int:
-        """The first lag, longer than the bins show, whose profile the next confirms, or the last."""
+        """The first lag, longer than the bins show, that the next confirms; the last if none."""
         d, error = self.results.by_lag, self.results.errors_by_lag
         for n in range(len(d) - 1):
             moved = np.sqrt(2 * d[n].min() * self.results.lags[n])  # where it is slowest

@@ -3,7 +3,7 @@
 from lammps_inputs import Scene
 from lammps_inputs.scenes.bulk_spheres import BulkSpheres
 from narrows.papers.carmer_2012.pores import agreement, draw
-from narrows.papers.carmer_2012.profiles import about_particles, by_colors
+from narrows.papers.carmer_2012.profiles import Profile, about_particles, by_colors, table_of
 from narrows.papers.drawing import COLOURS, one_panel
 from narrows.papers.figure import Directories, Outcome, PaperFigure, Quality
 from narrows.papers.results import Result
@@ -56,18 +56,13 @@ def both(quality: Quality) -> list[Scene]:
 def comparison(directories: Directories, quality: Quality) -> Outcome:
     """Fig. 3, by the corrected (3)."""
     figure, axes = one_panel("distance $r$", "pair diffusivity $D(r)$")
-    table: dict[str, list[float | int | str | None]] = {
-        name: [] for name in ("packing_fraction", "method", "r", "diffusivity", "error")
-    }
+    shown = list[tuple[float, str, Profile]]()
     results: list[Result] = []
     for number, packing in enumerate(PACKINGS):
         colors = by_colors(directories[colored(packing, quality)])[PROBABILITY]
         run = directories[followed(packing, quality)]
         paths = about_particles(run, CENTERS, FARTHEST, BINS, LAGS, LAG)
-        for method, profile in (("colours", colors), ("likelihood", paths)):
-            for row in zip(profile.place, profile.diffusivity, profile.error, strict=True):
-                for name, value in zip(table, (packing, method, *map(float, row)), strict=True):
-                    table[name].append(value)
+        shown += [(packing, "colours", colors), (packing, "likelihood", paths)]
         draw(axes, colors, number, f"colours, packing {packing:g}")
         axes.plot(paths.place, paths.diffusivity, "o", color=COLOURS[number], markersize=4)
         results += agreement(
@@ -80,7 +75,7 @@ def comparison(directories: Directories, quality: Quality) -> Outcome:
     axes.plot([], [], "o", color="0.3", label="likelihood")
     axes.set(xlim=(1, FARTHEST), ylim=(0, None))
     axes.legend()
-    return Outcome(figure, table, results)
+    return Outcome(figure, table_of(shown, "r"), results)
 
 
 FIGURES = (

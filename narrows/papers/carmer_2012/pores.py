@@ -8,7 +8,13 @@ from analysis.analyze import summary_of
 from analysis.estimate import Estimate
 from lammps_inputs import Scene
 from lammps_inputs.scenes.pore import Pore
-from narrows.papers.carmer_2012.profiles import CONFIDENCE_95, Profile, across, by_colors
+from narrows.papers.carmer_2012.profiles import (
+    CONFIDENCE_95,
+    Profile,
+    across,
+    by_colors,
+    table_of,
+)
 from narrows.papers.drawing import COLOURS, one_panel
 from narrows.papers.figure import Column, Directories, Outcome, PaperFigure, Quality
 from narrows.papers.results import Result, claimed, measured
@@ -63,17 +69,12 @@ def both(quality: Quality) -> list[Scene]:
 def comparison(directories: Directories, quality: Quality) -> Outcome:
     """Fig. 1."""
     figure, axes = one_panel("from the middle $z$", "diffusivity $D(z)$")
-    table: dict[str, list[float | int | str | None]] = {
-        name: [] for name in ("packing_fraction", "method", "z", "diffusivity", "error")
-    }
+    shown = list[tuple[float, str, Profile]]()
     results: list[Result] = []
     for number, packing in enumerate(PACKINGS):
         colors = by_colors(directories[colored(packing, quality)])[SLOW]
         paths = across(directories[followed(packing, quality)], BINS, LAGS, LAG)
-        for method, profile in (("colours", colors), ("likelihood", paths)):
-            for row in zip(profile.place, profile.diffusivity, profile.error, strict=True):
-                for name, value in zip(table, (packing, method, *map(float, row)), strict=True):
-                    table[name].append(value)
+        shown += [(packing, "colours", colors), (packing, "likelihood", paths)]
         draw(axes, colors, number, f"colours, packing {packing:g}")
         axes.plot(paths.place, paths.diffusivity, "o", color=COLOURS[number], markersize=4)
         results += agreement(
@@ -86,7 +87,7 @@ def comparison(directories: Directories, quality: Quality) -> Outcome:
     axes.plot([], [], "o", color="0.3", label="likelihood")
     axes.set(ylim=(0, None))
     axes.legend()
-    return Outcome(figure, table, results)
+    return Outcome(figure, table_of(shown, "z"), results)
 
 
 def draw(axes: Axes, profile: Profile, number: int, label: str) -> None:
@@ -109,7 +110,7 @@ def agreement(
     ranges: tuple[tuple[str, float, float], tuple[str, float, float]],
     spacings: tuple[float, float],
 ) -> list[Result]:
-    """Colours beside likelihood: far from the surface, where the paper says that they agree, and at it.
+    """Colours beside likelihood: far from the surface, where the paper has them agree, and at it.
 
     Args:
         profiles: by colours, by likelihood.

@@ -1,6 +1,7 @@
 """Profiles of D from runs, by colours and by likelihood, and numbers made of them."""
 
 import csv
+from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -37,6 +38,19 @@ class Profile:
         weight = error**-2
         value = float(np.sum(weight * d) / weight.sum())
         return Estimate(value, float(np.sqrt(min(together, len(d)) / weight.sum())))
+
+
+def table_of(
+    shown: Sequence[tuple[float, str, Profile]], coordinate: str
+) -> dict[str, list[float | str]]:
+    """Columns of profiles, each given with its packing fraction and method."""
+    rows: list[tuple[float | str, ...]] = [
+        (packing, method, *map(float, row))
+        for packing, method, profile in shown
+        for row in zip(profile.place, profile.diffusivity, profile.error, strict=True)
+    ]
+    names = ("packing_fraction", "method", coordinate, "diffusivity", "error")
+    return {name: [row[n] for row in rows] for n, name in enumerate(names)}
 
 
 def by_colors(run: RunDirectory) -> dict[float, Profile]:
