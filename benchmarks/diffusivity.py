@@ -4,7 +4,7 @@
 
 Walks of 100 walkers with known D and free energy (`tests/diffusivity/walks.py`), 3000 frames, each
 analysed on its own. Printed for |z - middle| < 1.2, 60 % of the slit: the fraction of positions
-whose 95 % interval holds the true D, the mean of D over the true one with its scatter between walks,
+whose 95 % interval holds the true D, mean and scatter between walks of D over the true one,
 and the mean relative error. With --page the table goes between the marks of that page.
 """
 
