@@ -367,7 +367,8 @@ class RunDirectory:
                 f"{self.path / name}: {universe.atoms.n_atoms} particles; the manifest says "
                 f"{expected}"
             )
-        for edge, size in zip(first.dimensions, self.box.sizes, strict=False):
+        edges = np.diagonal(first.triclinic_dimensions)
+        for edge, size in zip(edges, self.box.sizes, strict=False):
             if abs(edge - size) > BOX_PRECISION * size:
                 refuse(path, f"a box edge of {edge:g}; the manifest says {size:g}")
         universe.atoms.masses = self._each_particle("mass")

@@ -7,7 +7,7 @@ t0. A scene builds its `System` from them; an engine refuses the parts that it d
 import math
 from collections.abc import Iterator
 from dataclasses import dataclass
-from typing import Any, Literal, Protocol, Self
+from typing import Any, Literal, Protocol, Self, runtime_checkable
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -21,6 +21,7 @@ LONGEST_LOOK = 10  # beats between two looks at a fluid: its velocities decorrel
 Hydrodynamics = Literal["on", "shuffle", "bath"]
 Thermostat = Literal["none", "layer", "monte_carlo", "maxwell_boltzmann", "rescale", "andersen"]
 Rotation = Literal["random_axis", "coordinate_axes"]
+Coupling = Literal["force", "reflection", "cell"]
 Side = Literal["lower", "upper"]
 
 
@@ -120,12 +121,14 @@ class Species:
         count: how many.
         mass: of one [m_f].
         radius: where others meet its surface; 0: a point [a0].
+        inertia: moment of inertia of one, a solid sphere's; 0: they do not rotate [m_f a0^2].
     """
 
     name: str
     count: int
     mass: float
     radius: float = 0.0
+    inertia: float = 0.0
 
 
 class PairPotential(Protocol):
@@ -143,9 +146,21 @@ class PairPotential(Protocol):
     def pair_style(self) -> str:
         """Name of the LAMMPS style, without its arguments."""
 
+    def pair_arguments(self, cutoff: float, seed: str) -> str:
+        """What follows the style on the `pair_style` line, with a space before each argument.
+
+        Args:
+            cutoff: the largest of the species' interactions [a0].
+            seed: a variable of the deck, for a style that draws random numbers.
+        """
+
     @property
     def pair_modify(self) -> str:
         """Arguments of the `pair_modify` line."""
+
+    @property
+    def dissipates(self) -> bool:
+        """Whether it needs the velocities of both."""
 
     def energy(self, r: ArrayLike) -> Array:
         """Energy at distances r > 0 [kBT]."""
@@ -191,16 +206,25 @@ class Wall:
         axis: 0, 1 or 2, not periodic.
         side: of the box.
         potentials: for species, by name.
+        velocity: along itself, which the fluid feels [a0/t0].
     """
 
     axis: int
     side: Side
     potentials: tuple[tuple[str, WallPotential], ...] = ()
+    velocity: tuple[float, float, float] = (0.0, 0.0, 0.0)
 
 
-def slit(axis: int, potentials: tuple[tuple[str, WallPotential], ...] = ()) -> tuple[Wall, Wall]:
-    """The walls at both ends of an axis."""
-    return Wall(axis, "lower", potentials), Wall(axis, "upper", potentials)
+def slit(
+    axis: int,
+    potentials: tuple[tuple[str, WallPotential], ...] = (),
+    speed: float = 0.0,
+) -> tuple[Wall, Wall]:
+    """The walls at both ends of an axis; the lower moves along -x, the upper along x [a0/t0]."""
+    return (
+        Wall(axis, "lower", potentials, (-speed if speed else 0.0, 0.0, 0.0)),
+        Wall(axis, "upper", potentials, (speed, 0.0, 0.0)),
+    )
 
 
 @dataclass(frozen=True)
@@ -212,12 +236,14 @@ class Drive:
         magnitude: [a0/t0^2].
         direction: unit vector, three components.
         variable: of the deck, which holds the magnitude: `-var VARIABLE VALUE` changes it.
+        balanced: by an opposite one of the fluid, so that total momentum stays what it is.
     """
 
     target: str
     magnitude: float
     direction: tuple[float, float, float] = (1.0, 0.0, 0.0)
     variable: str = "gravity"
+    balanced: bool = False
 
     @property
     def acceleration(self) -> Array:
@@ -236,9 +262,6 @@ class Events:
 
     Species collide where their radii say that surfaces touch, with each other and with walls.
     """
-
-
-Motion = VelocityVerlet | Events
 
 
 @dataclass(frozen=True)
@@ -262,8 +285,85 @@ class Reactions:
 
 
 @dataclass(frozen=True)
+class Isokinetic:
+    """Gauss's thermostat: the kinetic energy is constant (delhommelle-2005, 1 to 3).
+
+    Attributes:
+        temperature: [kBT].
+        directions: of which the kinetic energy is.
+        shear_rate: dv_x/dy of a SLLOD flow, the kinetic energy then relative to it [1/t0].
+    """
+
+    temperature: float
+    directions: Literal["xyz", "x", "y", "z"] = "xyz"
+    shear_rate: float = 0.0
+
+
+@dataclass(frozen=True)
+class Configurational:
+    """The temperature of the configurations is held, velocities are free (delhommelle-2005, 4, 5).
+
+    Attributes:
+        temperature: [kBT].
+        damping: Q of (5).
+        shear_rate: dv_x/dy of a SLLOD flow [1/t0].
+    """
+
+    temperature: float
+    damping: float = 10.0
+    shear_rate: float = 0.0
+
+
+@dataclass(frozen=True)
+class Langevin:
+    """Friction -m friction v against the laboratory, and its noise.
+
+    Attributes:
+        temperature: [kBT].
+        friction: [1/t0].
+    """
+
+    temperature: float
+    friction: float
+
+
+@dataclass(frozen=True)
+class DissipativePairs:
+    """The thermostat of dissipative particle dynamics: friction and noise of pairs.
+
+    The friction of a pair is friction (1 - r/cutoff)^2 times its approach; momentum is conserved.
+
+    Attributes:
+        temperature: [kBT].
+        friction: [m_f/t0].
+        cutoff: [a0].
+    """
+
+    temperature: float
+    friction: float
+    cutoff: float
+
+
+Thermostatted = Isokinetic | Configurational | Langevin | DissipativePairs
+Motion = VelocityVerlet | Thermostatted | Events
+
+
+@dataclass(frozen=True)
+class Rest:
+    """A time at rest before step 0, without drives and outputs, the kinetic energy constant.
+
+    Attributes:
+        steps: of the clock's time step.
+        temperature: [kBT].
+    """
+
+    steps: int
+    temperature: float
+
+
+@dataclass(frozen=True)
 class Solvent:
-    """The MPC fluid. Its coupling to a species is their interaction with the `FLUID`.
+    """The MPC fluid.
 
     Attributes:
         particles: N_f.
@@ -274,6 +374,9 @@ class Solvent:
         hydrodynamics: on, or the random solvent instead.
         thermostat: of the fluid.
         shear_wave: amplitude A of the initial flow v_x = A sin(2 pi y / L_y) [a0/t0].
+        coupling: how it meets species: by the force of their interaction with the `FLUID`; or all
+            of them reflect it at their radius; or take part in the collision of their cell.
+        drift_interval: collisions between removals of the total momentum; 0: never.
     """
 
     particles: int
@@ -284,6 +387,8 @@ class Solvent:
     hydrodynamics: Hydrodynamics = "on"
     thermostat: Thermostat = "layer"
     shear_wave: float = 0.0
+    coupling: Coupling = "force"
+    drift_interval: int = 0
 
 
 class Placement(Protocol):
@@ -291,6 +396,17 @@ class Placement(Protocol):
 
     def positions(self, box: Box, species: tuple[Species, ...], seed: int) -> Array:
         """Centres of all species, one after the other, (N, d) [a0]."""
+
+
+@runtime_checkable
+class Continuation(Placement, Protocol):
+    """A placement with velocities, as another run left the particles."""
+
+    def velocities(self, box: Box, species: tuple[Species, ...]) -> Array:
+        """Velocities of all species, one after the other, (N, d) [a0/t0]."""
+
+    def problems(self, box: Box, species: tuple[Species, ...]) -> Iterator[str]:
+        """Why that run cannot be gone on from, in one line."""
 
 
 Kind = Literal["trajectory", "table", "profile"]
@@ -320,6 +436,17 @@ FLUID_PROFILE = Output(
     "fluid_profile.dat", "profile", ("Coord1", "Ncount", "density/number", "vx", "temp")
 )
 FLUID_AVERAGES = Output("observables.dat", "table", ("fluid_temperature", "mean_velocity_x"))
+SUSPENSION_AVERAGES = Output(
+    "observables.dat",
+    "table",
+    (
+        *FLUID_AVERAGES.columns,
+        "mean_velocity_z",
+        "fluid_velocity_x",
+        "fluid_velocity_z",
+        "rotational_temperature",
+    ),
+)
 PARTICLE_AVERAGES = Output(
     "observables.dat", "table", ("temperature", "potential_energy", "mean_velocity_x")
 )
@@ -332,6 +459,7 @@ class System:
     Attributes:
         species: particles, none for a pure fluid; atom types of LAMMPS from 1 on, in this order.
         placement: of the species at the start; None without any.
+        rest: before the run; None: it begins as the species are placed.
         solvent: None: the species move in vacuum.
         outputs: what the run writes.
         measures: what `narrows analyze` makes of it, names of `analysis/measures`.
@@ -348,6 +476,7 @@ class System:
     walls: tuple[Wall, ...] = ()
     drives: tuple[Drive, ...] = ()
     motion: Motion = VelocityVerlet()
+    rest: Rest | None = None
     solvent: Solvent | None = None
     reactions: Reactions | None = None
 
@@ -355,6 +484,11 @@ class System:
     def particles(self) -> int:
         """Number of particles of all species."""
         return sum(species.count for species in self.species)
+
+    @property
+    def shear_rate(self) -> float:
+        """dv_x/dy that the motion imposes on a sheared periodic box [1/t0]."""
+        return float(getattr(self.motion, "shear_rate", 0.0))
 
     @property
     def masses(self) -> Array:
@@ -365,6 +499,22 @@ class System:
     def radii(self) -> Array:
         """Radius of each particle, (N,) [a0]."""
         return self._each("radius")
+
+    @property
+    def inertias(self) -> Array:
+        """Moment of inertia of each particle, (N,) [m_f a0^2]."""
+        return self._each("inertia")
+
+    @property
+    def rotates(self) -> bool:
+        """Whether any species does."""
+        return any(species.inertia for species in self.species)
+
+    @property
+    def coupled(self) -> bool:
+        """Whether fluid and species meet at all."""
+        by_force = self.solvent is None or self.solvent.coupling == "force"
+        return bool(self.fluid_interactions()) if by_force else bool(self.species)
 
     @property
     def work(self) -> float:

@@ -68,6 +68,7 @@ class Species(Part):
     count: Whole
     mass: Positive
     radius: Annotated[float, Field(ge=0)]
+    inertia: Annotated[float, Field(ge=0)] = 0.0
 
 
 class Interaction(Part):
@@ -84,15 +85,27 @@ class Wall(Part):
     axis: Annotated[int, Field(ge=0, le=2)]
     side: Literal["lower", "upper"]
     potentials: tuple[tuple[Word, dict[str, Any]], ...]
+    velocity: Vector = (0.0, 0.0, 0.0)
 
 
 class Drive(Part):
-    """A constant acceleration, magnitude [a0/t0^2] times direction, of a species or the fluid."""
+    """A constant acceleration, magnitude [a0/t0^2] times direction, of a species or the fluid.
+
+    A balanced one is that of the fluid too, in the other direction, by the mass of both.
+    """
 
     target: Word
     magnitude: float
     direction: Vector
     variable: Word
+    balanced: bool = False
+
+
+class Rest(Part):
+    """A time at rest before step 0."""
+
+    steps: Whole
+    temperature: Positive
 
 
 class Solvent(Part):
@@ -106,6 +119,8 @@ class Solvent(Part):
     hydrodynamics: str
     thermostat: str
     shear_wave: float
+    coupling: Literal["force", "reflection", "cell"] = "force"
+    drift_interval: Whole = 0
     viscosity_theory: float | None
 
 
@@ -136,6 +151,7 @@ class System(Part):
     walls: tuple[Wall, ...]
     drives: tuple[Drive, ...]
     motion: dict[str, Any]
+    rest: Rest | None = None
     solvent: Solvent | None
     reactions: Reactions | None = None
     outputs: tuple[Output, ...]

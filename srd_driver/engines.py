@@ -32,11 +32,12 @@ def require_engine(scene: Scene, engine: str, processes: int = 1) -> None:
     check_engine(scene, engine)
     if problems := list(time_problems(scene.system.work, processes)):
         raise SceneError(problems)
-    if engine_named(engine).plugin and not lammps_plugin.folder():
+    if engine_named(engine).needs_plugin(scene.system) and not lammps_plugin.folder():
+        instead = "; or use --engine srd" if scene.system.solvent else ""
         raise RunError(
             f"engine {engine} needs the LAMMPS plugin, which was not built when narrows was "
             "installed: install a C++17 compiler, then narrows again with "
-            "NARROWS_REQUIRE_PLUGIN=1; or use --engine srd"
+            f"NARROWS_REQUIRE_PLUGIN=1{instead}"
         )
 
 

@@ -3,6 +3,7 @@
 A point is one combination of the swept fields; its repeats differ by the seed alone.
 """
 
+import contextlib
 import itertools
 import math
 from collections.abc import Mapping, Sequence
@@ -12,6 +13,7 @@ from typing import Any
 
 from lammps_inputs import SceneError, engine_named, make_scene
 from lammps_inputs.engines import DEFAULT, default_engine
+from run_files import RunDirectoryError
 from run_files.sweep_file import NAME, SweepFile, SweptRun, is_sweep, read_sweep, write_sweep
 from srd_driver.engines import require_engine
 from srd_driver.errors import RunError
@@ -94,7 +96,8 @@ def store(sweep: Sweep) -> Sweep:
     """
     directory = sweep.directory
     for run in sweep.runs:
-        is_finished(run)
+        with contextlib.suppress(RunDirectoryError):  # told when it is its turn
+            is_finished(run)
     if is_sweep(directory):
         before = read(directory)
         if (before.scene, before.engine) != (sweep.scene, sweep.engine):

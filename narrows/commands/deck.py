@@ -25,7 +25,7 @@ def deck(
     with user_errors():
         chosen = scene_of(scene, file, settings)
         engine = engine or default_engine(chosen.system)
-        plugin = lammps_engine_named(engine).plugin
+        plugin = lammps_engine_named(engine).needs_plugin(chosen.system)
         check_engine(chosen, engine)
         warn(warnings(chosen, engine))
         out.mkdir(parents=True, exist_ok=True)
