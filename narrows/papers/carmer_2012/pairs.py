@@ -11,7 +11,7 @@ from narrows.papers.results import Result
 PACKINGS = (0.2, 0.35)
 PROBABILITY = 0.01
 FRAME = 0.2
-LAGS, LAG = (2, 4, 8), 4
+LAGS, LAG = (2, 4, 8), 8  # in frames; longer ones lose the pairs that go too far
 BINS = 20
 CENTERS = 20
 FARTHEST = 4.0  # of the likelihood
@@ -56,6 +56,7 @@ def both(quality: Quality) -> list[Scene]:
 def comparison(directories: Directories, quality: Quality) -> Outcome:
     """Fig. 3, by the corrected (3)."""
     figure, axes = one_panel("distance $r$", "pair diffusivity $D(r)$")
+    highest = 0.0
     shown = list[tuple[float, str, Profile]]()
     results: list[Result] = []
     for number, packing in enumerate(PACKINGS):
@@ -65,6 +66,7 @@ def comparison(directories: Directories, quality: Quality) -> Outcome:
         shown += [(packing, "colours", colors), (packing, "likelihood", paths)]
         draw(axes, colors, number, f"colours, packing {packing:g}")
         axes.plot(paths.place, paths.diffusivity, "o", color=COLOURS[number], markersize=4)
+        highest = max(highest, float(paths.diffusivity.max()))
         results += agreement(
             "3",
             packing,
@@ -73,7 +75,7 @@ def comparison(directories: Directories, quality: Quality) -> Outcome:
             (FIT, (FARTHEST - 1) / BINS),
         )
     axes.plot([], [], "o", color="0.3", label="likelihood")
-    axes.set(xlim=(1, FARTHEST), ylim=(0, None))
+    axes.set(xlim=(1, FARTHEST), ylim=(0, 2 * highest))
     axes.legend()
     return Outcome(figure, table_of(shown, "r"), results)
 

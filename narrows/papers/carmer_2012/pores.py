@@ -25,7 +25,7 @@ DENSE = 0.35
 PROBABILITIES = (0.01, 0.03, 0.1, 0.3, 1.0)
 SLOW = 0.01
 FRAME = 0.2  # between frames for the likelihood
-LAGS, LAG = (2, 4, 8, 16), 8  # in frames; walkers must move by more than a bin
+LAGS, LAG = (4, 8, 16), 16  # in frames; many times D, the time in which velocities are lost
 BINS = 20
 INNER = 1.0  # |z| below: far from walls
 NEAR = 1.8  # |z| above: within 0.2 of contact
@@ -69,6 +69,7 @@ def both(quality: Quality) -> list[Scene]:
 def comparison(directories: Directories, quality: Quality) -> Outcome:
     """Fig. 1."""
     figure, axes = one_panel("from the middle $z$", "diffusivity $D(z)$")
+    highest = 0.0
     shown = list[tuple[float, str, Profile]]()
     results: list[Result] = []
     for number, packing in enumerate(PACKINGS):
@@ -77,6 +78,7 @@ def comparison(directories: Directories, quality: Quality) -> Outcome:
         shown += [(packing, "colours", colors), (packing, "likelihood", paths)]
         draw(axes, colors, number, f"colours, packing {packing:g}")
         axes.plot(paths.place, paths.diffusivity, "o", color=COLOURS[number], markersize=4)
+        highest = max(highest, float(paths.diffusivity.max()))
         results += agreement(
             "1",
             packing,
@@ -85,7 +87,7 @@ def comparison(directories: Directories, quality: Quality) -> Outcome:
             (FIT, 2 * OPEN / BINS),
         )
     axes.plot([], [], "o", color="0.3", label="likelihood")
-    axes.set(ylim=(0, None))
+    axes.set(ylim=(0, 2 * highest))
     axes.legend()
     return Outcome(figure, table_of(shown, "z"), results)
 

@@ -26,18 +26,21 @@ class Profile:
     error: Array
 
     def mean(self, low: float, high: float, spacing: float) -> Estimate:
-        """Weighted mean where low <= |place| <= high.
+        """Harmonic mean where low <= |place| <= high.
 
+        What is measured is a slope, 1/D up to factors: its errors are normal, those of D are not.
         Values within `spacing` of each other share their data, so that the error is that of so
         many fewer of them.
         """
         chosen = (np.abs(self.place) >= low) & (np.abs(self.place) <= high)
-        d, error = self.diffusivity[chosen], self.error[chosen]
+        resistance = 1 / self.diffusivity[chosen]
+        error = self.error[chosen] * resistance**2
+        count = len(resistance)
         step = float(np.diff(self.place).min())
-        together = max(1.0, spacing / step)
-        weight = error**-2
-        value = float(np.sum(weight * d) / weight.sum())
-        return Estimate(value, float(np.sqrt(min(together, len(d)) / weight.sum())))
+        together = min(max(1.0, spacing / step), count)
+        mean = float(resistance.mean())
+        of_mean = float(np.sqrt(together * np.sum(error**2))) / count
+        return Estimate(1 / mean, of_mean / mean**2)
 
 
 def table_of(

@@ -32,10 +32,12 @@ def test_a_mean_and_its_error_by_hand() -> None:
     place = np.array([-2.0, -1, 0, 1, 2])
     profile = Profile(place, np.array([9.0, 1, 2, 3, 9]), np.array([1, 0.1, 0.2, 0.1, 1]))
     one = profile.mean(0, 1, spacing=1.0)
-    assert one.number == pytest.approx((1 * 100 + 2 * 25 + 3 * 100) / 225)
-    assert one.standard_error == pytest.approx(225**-0.5)
+    resistance = (1 + 1 / 2 + 1 / 3) / 3
+    assert one.number == pytest.approx(1 / resistance)
+    of_resistance = (0.1**2 + (0.2 / 4) ** 2 + (0.1 / 9) ** 2) ** 0.5 / 3
+    assert one.standard_error == pytest.approx(of_resistance / resistance**2)
     shared = profile.mean(0, 1, spacing=2.0)
-    assert shared.standard_error == pytest.approx((2 / 225) ** 0.5)
+    assert shared.standard_error == pytest.approx(one.standard_error * 2**0.5)
     assert profile.mean(2, 2, spacing=1.0).number == 9
 
 
