@@ -12,9 +12,10 @@ PACKINGS = (0.2, 0.35)
 PROBABILITY = 0.01
 FRAME = 0.2
 LAGS, LAG = (2, 4, 8), 8  # in frames; longer ones lose the pairs that go too far
-BINS = 20
+BINS = 24
 CENTERS = 20
-FARTHEST = 4.0  # of the likelihood
+FARTHEST = 5.0  # of the likelihood: near it D is too low, for pairs that go beyond are lost
+SHOWN = 4.0
 FIT = 0.4
 
 
@@ -36,7 +37,7 @@ def followed(packing: float, quality: Quality) -> BulkSpheres:
     """The run whose paths are kept."""
     return BulkSpheres.make(
         particles=800,
-        cutoff=FARTHEST,
+        cutoff=SHOWN,
         centers=1,
         packing_fraction=packing,
         reaction_probabilities=(1.0,),
@@ -75,7 +76,7 @@ def comparison(directories: Directories, quality: Quality) -> Outcome:
             (FIT, (FARTHEST - 1) / BINS),
         )
     axes.plot([], [], "o", color="0.3", label="likelihood")
-    axes.set(xlim=(1, FARTHEST), ylim=(0, 2 * highest))
+    axes.set(xlim=(1, SHOWN), ylim=(0, 2 * highest))
     axes.legend()
     return Outcome(figure, table_of(shown, "r"), results)
 

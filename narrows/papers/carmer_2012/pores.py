@@ -28,8 +28,8 @@ FRAME = 0.2  # between frames for the likelihood
 LAGS, LAG = (4, 8, 16), 16  # in frames; many times D, the time in which velocities are lost
 BINS = 20
 INNER = 1.0  # |z| below: far from walls
-NEAR = 1.8  # |z| above: within 0.2 of contact
 OPEN = 2.0  # |z| of contact
+NEAR = 1.8, 1.96  # |z| within 0.2 of contact, without the last bins: there the fit is one-sided
 FIT = 0.4  # window of the local fit: values within it share their data
 
 
@@ -83,7 +83,7 @@ def comparison(directories: Directories, quality: Quality) -> Outcome:
             "1",
             packing,
             (colors, paths),
-            (("|z| < 1", 0.0, INNER), ("within 0.2 of contact", NEAR, OPEN)),
+            (("|z| < 1", 0.0, INNER), ("within 0.2 of contact", *NEAR)),
             (FIT, 2 * OPEN / BINS),
         )
     axes.plot([], [], "o", color="0.3", label="likelihood")
@@ -168,11 +168,11 @@ def _inset(axes: Axes, run: RunDirectory) -> None:
 def _bias(profiles: dict[float, Profile], run: RunDirectory) -> list[Result]:
     """Near the walls and in the middle against the slowest reaction; speeds of what reacted."""
     speeds = summary_of(run.path)["reacted_speed"]
-    slow = profiles[SLOW].mean(NEAR, OPEN, FIT)
+    slow = profiles[SLOW].mean(*NEAR, FIT)
     middle = profiles[SLOW].mean(0.0, INNER, FIT)
     results = []
     for p in PROBABILITIES[1:]:
-        near, inner = profiles[p].mean(NEAR, OPEN, FIT), profiles[p].mean(0.0, INNER, FIT)
+        near, inner = profiles[p].mean(*NEAR, FIT), profiles[p].mean(0.0, INNER, FIT)
         results.append(
             claimed(
                 "2",
