@@ -9,8 +9,15 @@ from numpy.typing import NDArray
 
 from analysis import RunDirectory
 from analysis.analyze import summary_of
-from analysis.diffusivity import AlongAxis, BayesianDiffusivity, PairDistance
+from analysis.colors import colors_of, estimate
+from analysis.diffusivity import (
+    AlongAxis,
+    BayesianDiffusivity,
+    PairDistance,
+    color_diffusivity,
+)
 from analysis.estimate import Estimate
+from analysis.measures.color_diffusivity import REACH
 
 Array = NDArray[np.float64]
 
@@ -67,6 +74,33 @@ def by_colors(run: RunDirectory) -> dict[float, Profile]:
         float(p): Profile(*numbers[numbers[:, 0] == p][:, [1, 3, 4]].T)
         for p in np.unique(numbers[:, 0])
     }
+
+
+def excess(run: RunDirectory, p: float, reference: float, low: float, high: float) -> Estimate:
+    """Harmonic mean of D(z) at one reaction probability over that at another, less 1.
+
+    Both are from one trajectory, so the jackknife is of the ratio.
+
+    Args:
+        low, high: |z| from the middle.
+    """
+    colors = colors_of(run)
+    place = np.abs(colors.positions - run.box.sizes[2] / 2)
+    chosen = (place >= low) & (place <= high)
+
+    def mean(number: Array, colored: Array, rate: Array) -> Array:
+        sums = (number[np.newaxis], colored[np.newaxis], np.atleast_1d(rate))
+        d, _ = color_diffusivity(colors.positions, colors.width, *sums, REACH)
+        return np.asarray(1 / np.mean(1 / d[chosen]))
+
+    def of(probability: float) -> tuple[Array, Array]:
+        k = colors.reactions.probabilities.index(probability)
+        return colors.chances[..., k], colors.through(colors.chance_rates[..., k])
+
+    def ratio(number: Array, a: Array, rate_a: Array, b: Array, rate_b: Array) -> Array:
+        return np.asarray(mean(number, a, rate_a) / mean(number, b, rate_b) - 1)
+
+    return estimate(ratio, colors.number, *of(p), *of(reference))
 
 
 def across(run: RunDirectory, bins: int, lags: tuple[int, ...], lag: int) -> Profile:
