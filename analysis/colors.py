@@ -133,4 +133,4 @@ def block_mean(values: Array) -> Estimate:
 def estimate(statistic: Callable[..., Array], *sums: Array) -> Estimate:
     """A number from blocks, with its jackknife error."""
     value, error = jackknife(statistic, *sums)
-    return Estimate(float(value), float(error))
+    return Estimate(float(value), float(error), freedom=len(sums[0]) - 1)

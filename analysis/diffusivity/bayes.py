@@ -2,7 +2,9 @@
 
 G. Hummer, New J. Phys. 7, 34 (2005), the method of carmer-2012's reference 2: (1) in bins of
 width w is a rate matrix with R(i+1, i) = D(i+1/2) / w^2 sqrt(P(i+1) / P(i)) and detailed balance,
-and its propagator exp(R t) gives the likelihood of the transitions seen in a lag t.
+and its propagator exp(R t) gives the likelihood of the transitions seen in a lag t. Hummer's prior
+makes neighbours alike; how much is chosen here by the evidence (D. MacKay, Neural Comput. 4, 415,
+1992), in Laplace's approximation.
 """
 
 from collections.abc import Sequence
@@ -22,6 +24,8 @@ from analysis.diffusivity.errors import DiffusivityError
 Array = NDArray[np.float64]
 
 MIN_CROSSINGS = 20  # between any two neighbouring bins
+LEAST_DISPLACEMENT = 2.5  # bins in a lag: below, where in its bin a walker began matters
+ROUGHNESS = tuple(np.geomspace(0.05, 5, 9))  # change of log D over a length of 1, rms: tried
 _TINY = 1e-300
 
 
@@ -82,8 +86,53 @@ class TransitionLikelihood:
         return value, np.asarray(rate * total)
 
 
-def most_likely(likelihood: TransitionLikelihood, start: Array) -> tuple[Array, Array]:
-    """log D of the highest likelihood and its covariance from the curvature there."""
+class SmoothPosterior:
+    """Log of likelihood times prior: differences of log D between faces are normal.
+
+    Their variance is roughness^2 w, so that log D is a random walk, whatever the width of bins.
+    """
+
+    def __init__(self, likelihood: TransitionLikelihood, variance: float) -> None:
+        self._likelihood, self._variance = likelihood, variance
+
+    def value(self, log_diffusivity: Array) -> float:
+        """Up to a constant."""
+        prior = float(np.sum(np.diff(log_diffusivity) ** 2)) / (2 * self._variance)
+        return self._likelihood.value(log_diffusivity) - prior
+
+    def value_and_gradient(self, log_diffusivity: Array) -> tuple[float, Array]:
+        """The value and its derivative by each log D."""
+        value, gradient = self._likelihood.value_and_gradient(log_diffusivity)
+        steps = np.diff(log_diffusivity)
+        pull = np.diff(steps, prepend=0, append=0) / self._variance
+        return value - float(np.sum(steps**2)) / (2 * self._variance), gradient + pull
+
+    def evidence(self, best: Array, covariance: Array) -> float:
+        """Logarithm of the integral over log D, by its value and curvature at the top."""
+        sign, determinant = np.linalg.slogdet(covariance)
+        if sign <= 0:
+            return -np.inf
+        normal = (len(best) - 1) * np.log(self._variance)
+        return self.value(best) + 0.5 * float(determinant) - 0.5 * float(normal)
+
+
+def smoothed(
+    likelihood: TransitionLikelihood, width: float, start: Array
+) -> tuple[SmoothPosterior, Array, Array]:
+    """The posterior of the most evident roughness, its top and its covariance there."""
+    tried = []
+    for roughness in ROUGHNESS:
+        posterior = SmoothPosterior(likelihood, roughness**2 * width)
+        start, covariance = most_likely(posterior, start)
+        tried.append((posterior.evidence(start, covariance), posterior, start, covariance))
+    _, posterior, best, covariance = max(tried, key=lambda each: each[0])
+    return posterior, best, covariance
+
+
+def most_likely(
+    likelihood: TransitionLikelihood | SmoothPosterior, start: Array
+) -> tuple[Array, Array]:
+    """log D of the highest value and its covariance from the curvature there."""
 
     def descent(x: Array) -> tuple[float, Array]:
         value, gradient = likelihood.value_and_gradient(x)
@@ -103,27 +152,29 @@ def most_likely(likelihood: TransitionLikelihood, start: Array) -> tuple[Array, 
 class BayesianDiffusivity(AnalysisBase):  # type: ignore[misc]
     """D at the faces between bins by likelihood, for several lags, with the posterior of one.
 
-    Transitions are counted over windows that do not overlap. The posterior has a flat prior in
-    log D and the measured populations; `emcee` samples it at the chosen lag. Short lags see motion
-    that is not yet diffusive, long ones wash the profile out: `results.by_lag` shows both.
+    Transitions are counted over windows that do not overlap. The prior has log D a random walk
+    along the coordinate, as rough as the data make most probable, and the measured populations;
+    `emcee` samples the posterior at the chosen lag. Short lags see motion that is not yet diffusive
+    and the width of the bins, long ones wash the profile out: `results.by_lag` shows both.
 
     Args:
         coordinate: `AlongAxis` or `PairDistance`.
         low, high: range of the bins: the walls, or beyond which pairs are not followed.
         bins: number of bins.
         lags: in frames, increasing.
-        lag: of the result, one of `lags`; by default the first from which on the profile agrees
-            with that of the next lag within the errors, rms.
+        lag: of the result, one of `lags`; by default the first in which walkers move by 2.5 bins
+            or more, rms, and whose profile agrees with that of the next lag within the errors, rms;
+            the last if none does.
         samples: steps of the sampler for each of its 2 (bins + 1) chains; 0 for the curvature only.
         seed: of the sampler.
 
     Attributes:
         results.positions: faces between bins (B - 1,).
         results.diffusivity, results.error: median and half the central 68 % of the posterior (with
-            no samples: highest likelihood, and from its curvature).
+            no samples: its top, and from the curvature there).
         results.interval: central 95 % of the posterior, (2, B - 1).
-        results.lags, results.by_lag, results.errors_by_lag: lag times (L,), most likely D and its
-            errors (L, B - 1).
+        results.lags, results.by_lag, results.errors_by_lag: lag times (L,), most probable D and
+            its errors (L, B - 1).
         results.lag: the chosen one, in time.
         results.density: walkers per length of the coordinate, in the bins (B,).
     """
@@ -183,7 +234,7 @@ class BayesianDiffusivity(AnalysisBase):  # type: ignore[misc]
             empty = self._low + self._width * (int(self._number.argmin()) + 0.5)
             raise DiffusivityError(f"no walker was ever in the bin at {empty:.4g}: fewer bins")
         population = self._number / self._number.sum()
-        profiles, errors, likelihoods = [], [], []
+        profiles, errors, posteriors = [], [], []
         guess = np.full(self._bins - 1, np.log(self._width**2 / step))
         for lag, count in zip(self._lags, counts, strict=True):
             crossings = [
@@ -195,26 +246,29 @@ class BayesianDiffusivity(AnalysisBase):  # type: ignore[misc]
                     f"{MIN_CROSSINGS} are needed: a longer trajectory or shorter lags"
                 )
             likelihood = TransitionLikelihood(count, population, self._width, lag * step)
-            guess, covariance = most_likely(likelihood, guess)
+            posterior, guess, covariance = smoothed(likelihood, self._width, guess)
             profiles.append(np.exp(guess))
             errors.append(np.exp(guess) * np.sqrt(np.maximum(np.diag(covariance), 0)))
-            likelihoods.append(likelihood)
+            posteriors.append(posterior)
         self.results.lags = np.array(self._lags) * step
         self.results.by_lag, self.results.errors_by_lag = np.array(profiles), np.array(errors)
         chosen = self._lags.index(self._lag) if self._lag else self._plateau()
         self.results.lag = float(self.results.lags[chosen])
-        self._sample(likelihoods[chosen], profiles[chosen], errors[chosen])
+        self._sample(posteriors[chosen], profiles[chosen], errors[chosen])
 
     def _plateau(self) -> int:
-        """The first lag whose profile the next confirms; the last if none."""
+        """The first lag, longer than the bins show, that the next confirms; the last if none."""
         d, error = self.results.by_lag, self.results.errors_by_lag
         for n in range(len(d) - 1):
+            moved = np.sqrt(2 * d[n].min() * self.results.lags[n])  # where it is slowest
+            if moved < LEAST_DISPLACEMENT * self._width:
+                continue
             spread = (d[n + 1] - d[n]) ** 2 / (error[n] ** 2 + error[n + 1] ** 2)
             if np.sqrt(np.mean(spread)) < 1:
                 return n
         return len(d) - 1
 
-    def _sample(self, likelihood: TransitionLikelihood, best: Array, error: Array) -> None:
+    def _sample(self, posterior: SmoothPosterior, best: Array, error: Array) -> None:
         if self._samples == 0:
             self.results.diffusivity, self.results.error = best, error
             self.results.interval = best * np.exp(np.outer([-1.96, 1.96], error / best))
@@ -223,7 +277,7 @@ class BayesianDiffusivity(AnalysisBase):  # type: ignore[misc]
         random = np.random.default_rng(self._seed)
         spread = 0.5 * error / best
         start = np.log(best) + spread * random.normal(size=(chains, len(best)))
-        sampler = emcee.EnsembleSampler(chains, len(best), likelihood.value)
+        sampler = emcee.EnsembleSampler(chains, len(best), posterior.value)
         sampler.random_state = np.random.RandomState(self._seed).get_state()
         sampler.run_mcmc(start, self._samples)
         kept = np.exp(sampler.get_chain(discard=self._samples // 3, flat=True))

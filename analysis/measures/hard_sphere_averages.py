@@ -24,7 +24,10 @@ def measure(run: RunDirectory) -> Findings:
     """Means of the table; Z beside theory in bulk, wall pressure beside the contact density."""
     table, kind = run.table(), run.species()
     used = run.sampled(table.steps)
-    entries = {name: correlated_mean.mean(table[name][used]).as_json() for name in table.columns}
+    entries = {
+        name: correlated_mean.mean(table[name][used], run.interval).as_json()
+        for name in table.columns
+    }
     if not run.manifest.system.walls:
         volume = math.prod(run.box.sizes)
         packing = kind.count * 4 / 3 * math.pi * kind.radius**3 / volume
