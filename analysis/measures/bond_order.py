@@ -1,6 +1,6 @@
 """Sixfold bond-orientational order of disks."""
 
-from analysis import blocking
+from analysis import correlated_mean
 from analysis.bond_order import bond_order
 from analysis.findings import Findings
 from analysis.measures.settling_speed import sampled_frames
@@ -13,7 +13,7 @@ def measure(run: RunDirectory) -> Findings:
     order = bond_order(positions, run.box.sizes)
     return Findings(
         {
-            "bond_order": blocking.mean(order.mean).as_json(),
-            "bond_order_local": blocking.mean(order.mean_modulus).as_json(),
+            "bond_order": correlated_mean.mean(order.mean).as_json(),
+            "bond_order_local": correlated_mean.mean(order.mean_modulus).as_json(),
         }
     )

@@ -2,7 +2,7 @@
 
 import numpy as np
 
-from analysis import blocking
+from analysis import correlated_mean
 from analysis.density_fluctuations import number_variance, structure_factor
 from analysis.findings import Findings
 from analysis.measures.settling_speed import sampled_frames
@@ -19,7 +19,7 @@ def measure(run: RunDirectory) -> Findings:
     longest = [float(structure_factor(frame, sizes, 1)[1].mean()) for frame in frames]
     return Findings(
         {
-            "number_variance": blocking.mean(variance).as_json(),
-            "structure_factor": blocking.mean(longest).as_json(),
+            "number_variance": correlated_mean.mean(variance).as_json(),
+            "structure_factor": correlated_mean.mean(longest).as_json(),
         }
     )

@@ -4,7 +4,7 @@ import numpy as np
 from matplotlib.figure import Figure
 from numpy.typing import NDArray
 
-from analysis import blocking
+from analysis import correlated_mean
 from analysis.drawing import TIME, mark_equilibration, one_panel
 from analysis.findings import Findings
 from analysis.lane_order import lane_order, lane_order_printed
@@ -23,8 +23,8 @@ def measure(run: RunDirectory) -> Findings:
     picture = draw(run.times(particles.steps), order, run.equilibration_time)
     return Findings(
         {
-            "lane_order": blocking.mean(order[used]).as_json(),
-            "lane_order_printed": blocking.mean(printed).as_json(),
+            "lane_order": correlated_mean.mean(order[used]).as_json(),
+            "lane_order_printed": correlated_mean.mean(printed).as_json(),
         },
         {"lane_order.png": picture},
     )

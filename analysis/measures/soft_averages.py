@@ -2,10 +2,10 @@
 
 import numpy as np
 
-from analysis import blocking
-from analysis.blocking import Estimate
+from analysis import correlated_mean
 from analysis.configurational_temperature import configurational_temperature
 from analysis.current import mobility
+from analysis.estimate import Estimate
 from analysis.findings import Findings
 from analysis.run_directory import RunDirectory
 
@@ -18,7 +18,7 @@ def measure(run: RunDirectory) -> Findings:
     table = run.table()
     used = run.sampled(table.steps)
     entries = {
-        name: blocking.mean(table[name][used]).as_json()
+        name: correlated_mean.mean(table[name][used]).as_json()
         for name in table.columns
         if name not in SUMS
     }

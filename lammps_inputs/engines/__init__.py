@@ -11,6 +11,7 @@ from lammps_inputs.engines.engine import Engine, LammpsEngine
 from lammps_inputs.scene import SceneError
 
 DEFAULT = "mpc"
+WITHOUT_SOLVENT = "md"
 
 
 @cache
