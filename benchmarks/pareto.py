@@ -28,8 +28,7 @@ import numpy as np
 from matplotlib.figure import Figure
 
 from analysis.analyze import summary_of
-from analysis.estimate import Estimate
-from analysis.sweep_table import combine
+from analysis.estimate import Estimate, mean_of_repeats
 from lammps_inputs import Scene, make_scene
 from lammps_inputs.scenes.channel import Channel
 from lammps_inputs.viscosity import solvent_viscosity
@@ -319,7 +318,7 @@ def evaluate(
     }
     for quantity in study.quantities:
         told = {
-            chosen: combine([quantity.measure(*one) for one in of_runs])
+            chosen: mean_of_repeats([quantity.measure(*one) for one in of_runs])
             for chosen, of_runs in summaries.items()
         }
         if isinstance(quantity.truth, Setting):

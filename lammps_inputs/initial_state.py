@@ -1,6 +1,6 @@
 """The state every engine starts from (tabatabaei-2009, 3.4.4)."""
 
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 
 import numpy as np
 from numpy.typing import NDArray
@@ -16,19 +16,22 @@ INITIAL_STREAM = 0  # Philox key of the initial state; the engines' own streams 
 class InitialState:
     """Positions [a0] and velocities [a0/t0].
 
-    Fluid (N_f, d); colloids, which are the particles of all species in their order, (N_c, d).
+    Fluid (N_f, d); colloids, which are the particles of all species in their order, (N_c, d); the
+    angular velocities, zero of those that do not rotate, (N_c, 3) [1/t0].
     """
 
     fluid_positions: Array
     fluid_velocities: Array
     colloid_positions: Array
     colloid_velocities: Array
+    colloid_spins: Array = field(default_factory=lambda: np.empty((0, 3)))
 
 
 def initial_state(system: System, seed: int) -> InitialState:
     """Particles at their places, fluid uniform in the space they leave, Maxwell velocities.
 
-    No fluid particle lies within the radius of a particle's centre. The total momentum is made zero
+    No fluid particle lies within the radius of a particle's centre, but where species are particles
+    of their cell. The total momentum is made zero
     by one velocity subtracted from all; the temperature is kBT = 1 on average. A shear wave of the
     solvent is added last, its mean taken off. A function of system and seed alone.
     """
@@ -43,8 +46,9 @@ def initial_state(system: System, seed: int) -> InitialState:
         colloid_velocities = system.placement.velocities(system.box, system.species)
 
     fluid = system.solvent
+    room = np.zeros_like(system.radii) if fluid and fluid.coupling == "cell" else system.radii
     fluid_positions = _positions_outside(
-        colloid_positions, system.radii, system.box, fluid.particles if fluid else 0, random
+        colloid_positions, room, system.box, fluid.particles if fluid else 0, random
     )
     fluid_velocities = random.normal(size=fluid_positions.shape)
     momentum = fluid_velocities.sum(axis=0)
@@ -62,8 +66,22 @@ def initial_state(system: System, seed: int) -> InitialState:
         wave = fluid.shear_wave * np.sin(2 * np.pi * y / system.box.sizes[1])
         fluid_velocities[:, 0] += wave - wave.mean()
     return InitialState(
-        fluid_positions, fluid_velocities, colloid_positions, colloid_velocities - drift
+        fluid_positions,
+        fluid_velocities,
+        colloid_positions,
+        colloid_velocities - drift,
+        _spins(system, random),
     )
+
+
+def _spins(system: System, random: np.random.Generator) -> Array:
+    """Angular velocities of kBT = 1, (N_c, 3)."""
+    inertia = system.inertias[:, np.newaxis]
+    spins = np.zeros((system.particles, 3))
+    if system.rotates:
+        normal = random.normal(size=spins.shape)
+        np.divide(normal, np.sqrt(inertia), out=spins, where=inertia > 0)
+    return spins
 
 
 def _positions_outside(
@@ -75,7 +93,7 @@ def _positions_outside(
     while len(accepted) < count:
         trial = random.random((2 * (count - len(accepted)) + 16, len(sizes))) * sizes
         free = np.ones(len(trial), dtype=bool)
-        for centre, radius in zip(centres, radii, strict=True):
+        for centre, radius in zip(centres[radii > 0], radii[radii > 0], strict=True):
             separation = box.nearest_image(trial - centre)
             free &= np.einsum("ij,ij->i", separation, separation) > radius**2
         accepted = np.concatenate([accepted, trial[free]])

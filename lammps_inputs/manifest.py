@@ -38,6 +38,7 @@ def _system(system: System) -> dict[str, Any]:
             "axis": wall.axis,
             "side": wall.side,
             "potentials": [(name, _named(potential)) for name, potential in wall.potentials],
+            "velocity": wall.velocity,
         }
         for wall in system.walls
     ]

@@ -8,43 +8,13 @@ order. Units are SI; reduced units are a = kBT = m_f = 1, of time t0 = a sqrt(m_
 
 import math
 from dataclasses import dataclass, fields
-from functools import cache
-from typing import Any
 
-import pint
-
-from lammps_inputs.dlvo import Dlvo
+from lammps_inputs.potentials.dlvo import Dlvo
 
 BOLTZMANN = 1.38e-23  # as the paper has it [J/K]
 ELEMENTARY_CHARGE = 1.602176634e-19  # [C]
 VACUUM_PERMITTIVITY = 8.8541878128e-12  # [F/m]
 WATER = 81.0  # eps_r that gives minima of the kind of Fig. 1
-
-
-@cache
-def _units() -> Any:
-    return pint.UnitRegistry()
-
-
-def si(value: str | float, unit: str) -> float:
-    """A quantity such as "0.4 um" or "20 mV" as a number in a unit, which plain numbers are in.
-
-    Raises:
-        ValueError: naming the value, its dimension and the one asked for.
-    """
-    if not isinstance(value, str):
-        return float(value)
-    try:
-        quantity = _units().Quantity(value)
-        if quantity.dimensionless and unit:
-            return float(quantity.magnitude)
-        return float(quantity.to(unit).magnitude)
-    except pint.DimensionalityError as error:
-        raise ValueError(
-            f"{value}: is a quantity of {error.dim1}, must be one of {error.dim2} such as 1 {unit}"
-        ) from None
-    except (pint.PintError, TypeError, AttributeError, ValueError) as error:
-        raise ValueError(f"{value}: not a quantity in {unit}: {error}") from None
 
 
 @dataclass(frozen=True)

@@ -21,6 +21,7 @@ LONGEST_LOOK = 10  # beats between two looks at a fluid: its velocities decorrel
 Hydrodynamics = Literal["on", "shuffle", "bath"]
 Thermostat = Literal["none", "layer", "monte_carlo", "maxwell_boltzmann", "rescale", "andersen"]
 Rotation = Literal["random_axis", "coordinate_axes"]
+Coupling = Literal["force", "reflection", "cell"]
 Side = Literal["lower", "upper"]
 
 
@@ -120,12 +121,14 @@ class Species:
         count: how many.
         mass: of one [m_f].
         radius: where others meet its surface; 0: a point [a0].
+        inertia: moment of inertia of one, a solid sphere's; 0: they do not rotate [m_f a0^2].
     """
 
     name: str
     count: int
     mass: float
     radius: float = 0.0
+    inertia: float = 0.0
 
 
 class PairPotential(Protocol):
@@ -143,9 +146,21 @@ class PairPotential(Protocol):
     def pair_style(self) -> str:
         """Name of the LAMMPS style, without its arguments."""
 
+    def pair_arguments(self, cutoff: float, seed: str) -> str:
+        """What follows the style on the `pair_style` line, with a space before each argument.
+
+        Args:
+            cutoff: the largest of the species' interactions [a0].
+            seed: a variable of the deck, for a style that draws random numbers.
+        """
+
     @property
     def pair_modify(self) -> str:
         """Arguments of the `pair_modify` line."""
+
+    @property
+    def dissipates(self) -> bool:
+        """Whether it needs the velocities of both."""
 
     def energy(self, r: ArrayLike) -> Array:
         """Energy at distances r > 0 [kBT]."""
@@ -191,16 +206,25 @@ class Wall:
         axis: 0, 1 or 2, not periodic.
         side: of the box.
         potentials: for species, by name.
+        velocity: along itself, which the fluid feels [a0/t0].
     """
 
     axis: int
     side: Side
     potentials: tuple[tuple[str, WallPotential], ...] = ()
+    velocity: tuple[float, float, float] = (0.0, 0.0, 0.0)
 
 
-def slit(axis: int, potentials: tuple[tuple[str, WallPotential], ...] = ()) -> tuple[Wall, Wall]:
-    """The walls at both ends of an axis."""
-    return Wall(axis, "lower", potentials), Wall(axis, "upper", potentials)
+def slit(
+    axis: int,
+    potentials: tuple[tuple[str, WallPotential], ...] = (),
+    speed: float = 0.0,
+) -> tuple[Wall, Wall]:
+    """The walls at both ends of an axis; the lower moves along -x, the upper along x [a0/t0]."""
+    return (
+        Wall(axis, "lower", potentials, (-speed if speed else 0.0, 0.0, 0.0)),
+        Wall(axis, "upper", potentials, (speed, 0.0, 0.0)),
+    )
 
 
 @dataclass(frozen=True)
@@ -212,12 +236,14 @@ class Drive:
         magnitude: [a0/t0^2].
         direction: unit vector, three components.
         variable: of the deck, which holds the magnitude: `-var VARIABLE VALUE` changes it.
+        balanced: by an opposite one of the fluid, so that total momentum stays what it is.
     """
 
     target: str
     magnitude: float
     direction: tuple[float, float, float] = (1.0, 0.0, 0.0)
     variable: str = "gravity"
+    balanced: bool = False
 
     @property
     def acceleration(self) -> Array:
@@ -228,6 +254,34 @@ class Drive:
 @dataclass(frozen=True)
 class VelocityVerlet:
     """Newton's equations of motion, by velocity Verlet."""
+
+
+@dataclass(frozen=True)
+class Events:
+    """Free flight from one elastic collision to the next, at exact times.
+
+    Species collide where their radii say that surfaces touch, with each other and with walls.
+    """
+
+
+@dataclass(frozen=True)
+class Reactions:
+    """Colours A and B that no particle feels: A turns to B at one surface, B to A at another.
+
+    The surfaces are the lower and the upper wall of an axis; or, about central particles, contact
+    with one of them and the sphere of radius `cutoff`, entered from outside.
+
+    Attributes:
+        probabilities: of a reaction at each visit, (0, 1]; each has colours of its own.
+        axis: of the walls; None where central particles have the surfaces.
+        centers: the first so many particles are central.
+        cutoff: radius of the outer surface [a0].
+    """
+
+    probabilities: tuple[float, ...]
+    axis: int | None = None
+    centers: int = 0
+    cutoff: float = 0.0
 
 
 @dataclass(frozen=True)
@@ -291,7 +345,7 @@ class DissipativePairs:
 
 
 Thermostatted = Isokinetic | Configurational | Langevin | DissipativePairs
-Motion = VelocityVerlet | Thermostatted
+Motion = VelocityVerlet | Thermostatted | Events
 
 
 @dataclass(frozen=True)
@@ -309,7 +363,7 @@ class Rest:
 
 @dataclass(frozen=True)
 class Solvent:
-    """The MPC fluid. Its coupling to a species is their interaction with the `FLUID`.
+    """The MPC fluid.
 
     Attributes:
         particles: N_f.
@@ -320,6 +374,9 @@ class Solvent:
         hydrodynamics: on, or the random solvent instead.
         thermostat: of the fluid.
         shear_wave: amplitude A of the initial flow v_x = A sin(2 pi y / L_y) [a0/t0].
+        coupling: how it meets species: by the force of their interaction with the `FLUID`; or all
+            of them reflect it at their radius; or take part in the collision of their cell.
+        drift_interval: collisions between removals of the total momentum; 0: never.
     """
 
     particles: int
@@ -330,6 +387,8 @@ class Solvent:
     hydrodynamics: Hydrodynamics = "on"
     thermostat: Thermostat = "layer"
     shear_wave: float = 0.0
+    coupling: Coupling = "force"
+    drift_interval: int = 0
 
 
 class Placement(Protocol):
@@ -359,7 +418,7 @@ class Output:
 
     Attributes:
         file: its name.
-        kind: trajectory of particles; table of averages; profile across the y axis.
+        kind: trajectory of particles; table of averages; profile, averages by bins.
         columns: beside the step. Those of a table are quantities that the engine averages.
     """
 
@@ -377,6 +436,17 @@ FLUID_PROFILE = Output(
     "fluid_profile.dat", "profile", ("Coord1", "Ncount", "density/number", "vx", "temp")
 )
 FLUID_AVERAGES = Output("observables.dat", "table", ("fluid_temperature", "mean_velocity_x"))
+SUSPENSION_AVERAGES = Output(
+    "observables.dat",
+    "table",
+    (
+        *FLUID_AVERAGES.columns,
+        "mean_velocity_z",
+        "fluid_velocity_x",
+        "fluid_velocity_z",
+        "rotational_temperature",
+    ),
+)
 PARTICLE_AVERAGES = Output(
     "observables.dat", "table", ("temperature", "potential_energy", "mean_velocity_x")
 )
@@ -393,6 +463,7 @@ class System:
         solvent: None: the species move in vacuum.
         outputs: what the run writes.
         measures: what `narrows analyze` makes of it, names of `analysis/measures`.
+        reactions: of colours, if any.
     """
 
     box: Box
@@ -407,6 +478,7 @@ class System:
     motion: Motion = VelocityVerlet()
     rest: Rest | None = None
     solvent: Solvent | None = None
+    reactions: Reactions | None = None
 
     @property
     def particles(self) -> int:
@@ -427,6 +499,22 @@ class System:
     def radii(self) -> Array:
         """Radius of each particle, (N,) [a0]."""
         return self._each("radius")
+
+    @property
+    def inertias(self) -> Array:
+        """Moment of inertia of each particle, (N,) [m_f a0^2]."""
+        return self._each("inertia")
+
+    @property
+    def rotates(self) -> bool:
+        """Whether any species does."""
+        return any(species.inertia for species in self.species)
+
+    @property
+    def coupled(self) -> bool:
+        """Whether fluid and species meet at all."""
+        by_force = self.solvent is None or self.solvent.coupling == "force"
+        return bool(self.fluid_interactions()) if by_force else bool(self.species)
 
     @property
     def work(self) -> float:

@@ -1,6 +1,7 @@
 #include "fix_mpc.h"
 
 #include "core/cell_coupling.h"
+#include "core/fluid_file.h"
 
 #include "atom.h"
 #include "comm.h"
@@ -161,9 +162,18 @@ template <int D> void FixMPC<D>::write_restart(FILE *file)
 
 template <int D> void FixMPC<D>::restart(char *buffer)
 {
-  make_solver(MpcState<D>::particles_in(buffer));
-  check_processes();
-  colloids_.pulls = state_->restart(buffer);
+  guarded([&] {
+    const auto header = mpc::read_restart_header<D>(buffer, given_.seed);
+    make_solver(static_cast<double>(header.fluid.particles));
+    check_processes();
+    auto &pulls = colloids_.pulls;
+    pulls = state_->restart(buffer);
+    if (couples_every_step())    // images of a colloid are of one process, atoms may change theirs
+      pulls.erase(std::remove_if(pulls.begin(), pulls.end(),
+                                 [&](const auto &pull) { return pull.process != comm->me; }),
+                  pulls.end());
+    restored_ = true;
+  });
 }
 
 template <int D> void FixMPC<D>::add_forces()
@@ -194,6 +204,12 @@ template <int D> void FixMPC<D>::setup_pre_reverse(int, int)
   if (couples_every_step()) add_forces();
 }
 
+template <int D> void FixMPC<D>::setup(int)
+{
+  if (restored_ && coupling() && !couples_every_step()) colloids_.repeat_forces();
+  restored_ = false;
+}
+
 template <int D> void FixMPC<D>::initial_integrate(int)
 {
   if (!open_) {
@@ -222,10 +238,12 @@ template <int D> void FixMPC<D>::end_of_step()
     colloids_.see_velocities();
   guarded([&] { solver_->end_interval(colloids_.seen()); });
   open_ = false;
-  if (couples_every_step())
+  if (couples_every_step()) {
     colloids_.remember_pulls();
-  else if (coupling())
+  } else if (coupling()) {
     colloids_.apply_impulses(coupling()->impulses());
+    colloids_.remember_forces();
+  }
   if (given_.momentum_every > 0 && solver_->collisions() % given_.momentum_every == 0)
     remove_momentum();
   if (coupling()) colloids_.see(interval_);

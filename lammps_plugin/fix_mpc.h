@@ -24,6 +24,7 @@ template <int D> class FixMPC : public Fix {
   int setmask() override;
   void init() override;
   void setup_pre_reverse(int, int) override;
+  void setup(int) override;
   void initial_integrate(int) override;
   void pre_reverse(int, int) override;
   void final_integrate() override;
@@ -60,7 +61,8 @@ template <int D> class FixMPC : public Fix {
   std::unique_ptr<mpc::Solver<D>> solver_;
   std::unique_ptr<MpcState<D>> state_;
   double interval_ = 0;
-  bool open_ = false;    // within an interval
+  bool open_ = false;        // within an interval
+  bool restored_ = false;    // from a restart, not yet gone on
 
   std::vector<mpc::Layer> layers_;
   bigint layers_step_ = -1;

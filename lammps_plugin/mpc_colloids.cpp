@@ -11,6 +11,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <map>
 #include <tuple>
 
 using namespace LAMMPS_NS;
@@ -96,17 +97,8 @@ template <int D> void MpcColloids<D>::see(double interval)
     bounds[1] = std::max(bounds[1], 1 / seen.mass);
   }
   forces_.assign(seen_.size(), {});
-  if (!coupling_->sees_images()) return;
   if (comm->nprocs > 1) MPI_Allreduce(MPI_IN_PLACE, bounds, 2, MPI_DOUBLE, MPI_MAX, world);
   speed_ = std::sqrt(bounds[0]) + SPEED_MARGIN * std::sqrt(temperature_ * bounds[1]);
-
-  // cells reach beyond the sub-domain by the shift and half a cell, and colloids move
-  if (seen_.empty()) return;
-  const double needed = 1.5 * edge_ + coupling_->reach() + 3 * interval * speed_;
-  for (int a = 0; a < D; ++a)
-    if (comm->cutghost[a] < needed && domain->periodicity[a])
-      error->one(FLERR, "fix mpc: the ghost cutoff {:.4g} is too short for the fluid to see all "
-                 "colloids: use comm_modify cutoff {:.4g} or more", comm->cutghost[a], needed);
 
   // LAMMPS does not look whether anybody has crossed the skin with `check no`
   const int steps = std::max(neighbor->every, neighbor->delay) - 1;
@@ -115,6 +107,14 @@ template <int D> void MpcColloids<D>::see(double interval)
     error->one(FLERR, "fix mpc: neigh_modify check no: the skin {:.4g} is too short for lists that "
                "are built every {} steps: use neighbor {:.4g} or more", neighbor->skin, steps + 1,
                skin);
+
+  // cells reach beyond the sub-domain by the shift and half a cell, and colloids move
+  if (seen_.empty() || !coupling_->sees_images()) return;
+  const double needed = 1.5 * edge_ + coupling_->reach() + 3 * interval * speed_;
+  for (int a = 0; a < D; ++a)
+    if (comm->cutghost[a] < needed && domain->periodicity[a])
+      error->one(FLERR, "fix mpc: the ghost cutoff {:.4g} is too short for the fluid to see all "
+                 "colloids: use comm_modify cutoff {:.4g} or more", comm->cutghost[a], needed);
 }
 
 template <int D> void MpcColloids<D>::see_velocities()
@@ -284,6 +284,36 @@ template <int D> bool MpcColloids<D>::repeat_pulls() const
   for (std::size_t k = 0; k < atoms.size(); ++k)
     for (int a = 0; a < D; ++a) atom->f[atoms[k]][a] += pulls[k].force[a];
   return true;
+}
+
+// Two for each colloid: force, then torque.
+template <int D> void MpcColloids<D>::remember_forces()
+{
+  pulls.clear();
+  for (int i = 0; i < atom->nlocal; ++i) {
+    if (!is_colloid(i)) continue;
+    Pull<D> pull{static_cast<double>(comm->me), static_cast<double>(atom->tag[i]), {}, {}};
+    for (int a = 0; a < D; ++a) pull.force[a] = atom->f[i][a];
+    pulls.push_back(pull);
+    pull.force = {};
+    if (atom->torque_flag)
+      for (int a = 0; a < (D == 2 ? 1 : D); ++a) pull.force[a] = atom->torque[i][D == 2 ? 2 : a];
+    pulls.push_back(pull);
+  }
+}
+
+template <int D> void MpcColloids<D>::repeat_forces() const
+{
+  std::map<double, std::size_t> known;    // where the force of each is
+  for (std::size_t k = 0; k + 1 < pulls.size(); k += 2) known[pulls[k].id] = k;
+  for (int i = 0; i < atom->nlocal; ++i) {
+    const auto found = known.find(static_cast<double>(atom->tag[i]));
+    if (!is_colloid(i) || found == known.end()) continue;
+    const auto &force = pulls[found->second].force, &torque = pulls[found->second + 1].force;
+    for (int a = 0; a < D; ++a) atom->f[i][a] = force[a];
+    if (atom->torque_flag)
+      for (int a = 0; a < (D == 2 ? 1 : D); ++a) atom->torque[i][D == 2 ? 2 : a] = torque[a];
+  }
 }
 
 template class LAMMPS_NS::MpcColloids<2>;

@@ -66,6 +66,11 @@ template <int D> class MpcColloids : protected Pointers {
   // Forces decide the last bits, so a continued run takes over those of the run before.
   void remember_pulls();
   bool repeat_pulls() const;    // if all colloids are where they were
+
+  // So do all forces and torques on colloids that the fluid meets at collisions only: friction
+  // between them needs velocities of the half step, which a continued run does not know.
+  void remember_forces();
+  void repeat_forces() const;
   std::vector<Pull<D>> pulls;
 
  private:

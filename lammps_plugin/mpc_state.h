@@ -23,16 +23,15 @@ template <int D> class MpcState : protected Pointers {
   std::array<int, D> lower() const;
   std::array<int, D> upper() const;
 
-  // How many particles a file has, or a restart.
+  // How many particles a file has.
   static double particles_in(class Error &, const std::string &file);
-  static double particles_in(const char *restart);
 
   void create(const std::vector<mpc::Colloid<D>> &, const mpc::Coupling<D> *);
   void load(const std::string &file);
   void save(const std::string &file);
 
   void write_restart(FILE *, const std::vector<Pull<D>> &of_all);
-  std::vector<Pull<D>> restart(const char *);    // this process's, of as many as there were
+  std::vector<Pull<D>> restart(const char *);    // of all, if they were as many processes
 
  private:
   std::array<int, D> bound(const double *corner) const;

@@ -256,8 +256,8 @@ void PairDLVO::compute(int eflag, int vflag)
         if (temperature_ > 0) {
           const auto [low, high] = std::minmax(tag[i], tag[j]);
           z = mpc::normals<4>(random.words(mpc::Stream::Pair, low, high));
-          if (tag[i] != low)
-            for (double &each : z) each = -each;
+          if (tag[i] != low)    // across the line of centres; along it e has another sign
+            for (int k = 1; k < 4; ++k) z[k] = -z[k];
         }
         along += noise * std::sqrt(friction) * z[0] - friction * approach;
         if (rubbing) {

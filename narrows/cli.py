@@ -7,6 +7,7 @@ import typer
 
 from narrows.commands.analyze import analyze
 from narrows.commands.deck import deck
+from narrows.commands.diffusivity import diffusivity
 from narrows.commands.lattice import app as lattice_app
 from narrows.commands.reproduce import reproduce
 from narrows.commands.run import run
@@ -19,7 +20,7 @@ app = typer.Typer(
     pretty_exceptions_enable=False,
     help="Particles driven through narrow spaces: scenes, LAMMPS decks, runs and their analysis.",
 )
-for command in (deck, run, sweep, status, analyze, reproduce):
+for command in (deck, run, sweep, status, analyze, diffusivity, reproduce):
     app.command()(command)
 app.add_typer(lattice_app, name="lattice")
 

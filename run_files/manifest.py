@@ -68,6 +68,7 @@ class Species(Part):
     count: Whole
     mass: Positive
     radius: Annotated[float, Field(ge=0)]
+    inertia: Annotated[float, Field(ge=0)] = 0.0
 
 
 class Interaction(Part):
@@ -84,15 +85,20 @@ class Wall(Part):
     axis: Annotated[int, Field(ge=0, le=2)]
     side: Literal["lower", "upper"]
     potentials: tuple[tuple[Word, dict[str, Any]], ...]
+    velocity: Vector = (0.0, 0.0, 0.0)
 
 
 class Drive(Part):
-    """A constant acceleration, magnitude [a0/t0^2] times direction, of a species or the fluid."""
+    """A constant acceleration, magnitude [a0/t0^2] times direction, of a species or the fluid.
+
+    A balanced one is that of the fluid too, in the other direction, by the mass of both.
+    """
 
     target: Word
     magnitude: float
     direction: Vector
     variable: Word
+    balanced: bool = False
 
 
 class Rest(Part):
@@ -113,7 +119,18 @@ class Solvent(Part):
     hydrodynamics: str
     thermostat: str
     shear_wave: float
+    coupling: Literal["force", "reflection", "cell"] = "force"
+    drift_interval: Whole = 0
     viscosity_theory: float | None
+
+
+class Reactions(Part):
+    """Reactions of colours, at the walls of an axis or about the first so many particles."""
+
+    probabilities: tuple[Annotated[float, Field(gt=0, le=1)], ...] = Field(min_length=1)
+    axis: Annotated[int, Field(ge=0, le=2)] | None
+    centers: Whole
+    cutoff: Annotated[float, Field(ge=0)]
 
 
 class Output(Part):
@@ -136,6 +153,7 @@ class System(Part):
     motion: dict[str, Any]
     rest: Rest | None = None
     solvent: Solvent | None
+    reactions: Reactions | None = None
     outputs: tuple[Output, ...]
     measures: tuple[Word, ...]
 
@@ -154,6 +172,9 @@ class System(Part):
         for wall in self.walls:
             if wall.axis >= self.box.dimensions or self.box.periodic[wall.axis]:
                 raise ValueError(f"a wall across axis {wall.axis}, which is periodic or none")
+        reacting = self.reactions.axis if self.reactions else None
+        if reacting is not None and reacting not in [wall.axis for wall in self.walls]:
+            raise ValueError(f"reactions at walls of axis {reacting}: it has none")
         return self
 
 

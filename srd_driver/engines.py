@@ -12,7 +12,10 @@ from run_files.progress import Progress
 from srd_driver.errors import RunError
 from srd_driver.session import Session
 
-SESSIONS = {"reference": "srd_driver.reference_session:ReferenceSession"}
+SESSIONS = {
+    "reference": "srd_driver.reference_session:ReferenceSession",
+    "events": "srd_driver.events_session:EventsSession",
+}
 
 
 def require_engine(scene: Scene, engine: str, processes: int = 1) -> None:

@@ -180,12 +180,18 @@ def newest_step(directory: Path) -> int:
     Raises:
         RunDirectoryError: when the directory holds no run.
     """
-    step = read_progress(directory).step
-    tables = [output.file for output in read_manifest(directory).system.outputs]
-    for name in tables:
-        if name.endswith(".dat") and (directory / name).is_file():
-            step = max(step, _last_label(directory / name))
-    return step
+    return max(read_progress(directory).step, written_step(directory))
+
+
+def written_step(directory: Path) -> int:
+    """The last step that the tables and profiles of a directory tell of; 0 without any.
+
+    Raises:
+        RunDirectoryError: when the directory holds no run.
+    """
+    outputs = read_manifest(directory).system.outputs
+    files = [directory / each.file for each in outputs if each.kind != "trajectory"]
+    return max((_last_label(file) for file in files if file.is_file()), default=0)
 
 
 def _last_label(path: Path) -> int:

@@ -10,7 +10,7 @@ from types import TracebackType
 from typing import Any, Self, TextIO
 
 from lammps_inputs import Scene, SceneError
-from lammps_inputs.engines import DEFAULT
+from lammps_inputs.engines import default_engine
 from run_files.checksums import Checksum, GrowingFile
 from run_files.names import checkpoint_name
 from run_files.progress import FORMAT, Progress, is_begun, write_failure, write_progress
@@ -33,7 +33,7 @@ class Simulation:
 
     Args:
         scene: what to simulate.
-        engine: name of an engine (docs/scenes.md); default: our fix mpc.
+        engine: name of an engine (docs/scenes.md); default: our fix mpc, or what else can run it.
         directory: the run directory, new or empty; none: a temporary one, gone after `close`.
         resume: go on with the run in `directory` from its newest checkpoint, or begin it.
         checkpoint_interval: time between two checkpoints, in whole sampling intervals [t0].
@@ -49,13 +49,13 @@ class Simulation:
     def __init__(
         self,
         scene: Scene,
-        engine: str = DEFAULT,
+        engine: str | None = None,
         directory: str | Path | None = None,
         resume: bool = False,
         checkpoint_interval: float = 20.0,
     ) -> None:
         self.scene = scene
-        self.engine = engine
+        self.engine = engine or default_engine(scene.system)
         if not checkpoint_interval >= 0:
             raise SceneError.of_field("checkpoint_interval", checkpoint_interval, "must be a time")
         self._clock = scene.system.clock

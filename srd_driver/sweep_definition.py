@@ -3,6 +3,7 @@
 A point is one combination of the swept fields; its repeats differ by the seed alone.
 """
 
+import contextlib
 import itertools
 import math
 from collections.abc import Mapping, Sequence
@@ -11,6 +12,8 @@ from pathlib import Path
 from typing import Any
 
 from lammps_inputs import SceneError, engine_named, make_scene
+from lammps_inputs.engines import DEFAULT, default_engine
+from run_files import RunDirectoryError
 from run_files.sweep_file import NAME, SweepFile, SweptRun, is_sweep, read_sweep, write_sweep
 from srd_driver.engines import require_engine
 from srd_driver.errors import RunError
@@ -36,7 +39,7 @@ def plan(
     fields: Mapping[str, Any],
     over: Mapping[str, Sequence[Any]],
     repeats: int,
-    engine: str,
+    engine: str | None = None,
 ) -> Sweep:
     """The product of the lists of `over`, each point with the seeds seed, seed + 1, ...
 
@@ -44,6 +47,7 @@ def plan(
         fields: of the scene, for all points.
         over: the values of each swept field.
         repeats: runs of each point, R.
+        engine: of all runs; default: that of the first point.
 
     Raises:
         SceneError: naming each bad point, its field, value and what is allowed.
@@ -65,6 +69,7 @@ def plan(
                 run_scene = make_scene(
                     scene, **(first.model_dump() | {"seed": first.seed + repeat})
                 )
+                engine = engine or default_engine(run_scene.system)
                 require_engine(run_scene, engine)
                 names = [*over, "seed"] if "seed" not in over else over
                 name = _label({field: getattr(run_scene, field) for field in names})
@@ -76,7 +81,7 @@ def plan(
                 problems.setdefault(problem, []).append(label)
     if problems:
         raise SceneError(f"{_points(labels)}: {text}" for text, labels in problems.items())
-    return Sweep(directory, scene, engine, tuple(over), tuple(runs.values()))
+    return Sweep(directory, scene, engine or DEFAULT, tuple(over), tuple(runs.values()))
 
 
 def store(sweep: Sweep) -> Sweep:
@@ -91,7 +96,8 @@ def store(sweep: Sweep) -> Sweep:
     """
     directory = sweep.directory
     for run in sweep.runs:
-        is_finished(run)
+        with contextlib.suppress(RunDirectoryError):  # told when it is its turn
+            is_finished(run)
     if is_sweep(directory):
         before = read(directory)
         if (before.scene, before.engine) != (sweep.scene, sweep.engine):

@@ -58,14 +58,14 @@ def test_a_scene_in_one_file(
             scene.system.particles,
             scene.system.box.dimensions,
         )
-    _same_bytes(whole, tmp_path / "lmp1", scene)
+    same_bytes(whole, tmp_path / "lmp1", scene)
     kill_and_resume(scene, engine, tmp_path / "killed")
-    _same_bytes(whole, tmp_path / "killed", scene)
+    same_bytes(whole, tmp_path / "killed", scene)
 
     swept = sweep_definition.plan(tmp_path / "sweep", name, {}, {"seed": [1, 2]}, 1, engine)
     assert run_all(sweep_definition.store(swept).runs, jobs=2) == []
     assert len(tabulate(tmp_path / "sweep", jobs=1).rows) == 2
-    _same_bytes(whole, tmp_path / "sweep" / "seed=1", scene)
+    same_bytes(whole, tmp_path / "sweep" / "seed=1", scene)
 
     summary = analyze(tmp_path / "lmp2")
     assert numbers <= {key for key, entry in summary.items() if isinstance(entry, dict)}
@@ -92,11 +92,13 @@ def test_spheres_are_the_same_in_the_reference(tmp_path: Path) -> None:
 def kill_and_resume(scene: Scene, engine: str, directory: Path) -> None:
     """Begin the run in another process, kill it amid its work, and go on here."""
     code = (
-        "import sys, lammps_inputs; from srd_driver import Simulation\n"
-        f"scene = lammps_inputs.make_scene({scene.name!r})\n"
+        "import json, sys, lammps_inputs; from srd_driver import Simulation\n"
+        f"scene = lammps_inputs.make_scene({scene.name!r}, **json.loads(sys.argv[2]))\n"
         f"Simulation(scene, {engine!r}, sys.argv[1], checkpoint_interval=0.2).finish()"
     )
-    process = subprocess.Popen([sys.executable, "-c", code, str(directory)], cwd=ROOT)
+    process = subprocess.Popen(
+        [sys.executable, "-c", code, str(directory), scene.model_dump_json()], cwd=ROOT
+    )
     progress = directory / "progress.json"
     while process.poll() is None:
         if progress.exists() and json.loads(progress.read_text())["step"] > 0:
@@ -107,7 +109,7 @@ def kill_and_resume(scene: Scene, engine: str, directory: Path) -> None:
         simulation.finish()
 
 
-def _same_bytes(one: Path, other: Path, scene: Scene) -> None:
+def same_bytes(one: Path, other: Path, scene: Scene) -> None:
     """Outputs without their titles, which LAMMPS repeats when it goes on."""
     for output in scene.system.outputs:
         texts = [(folder / output.file).read_text().splitlines() for folder in (one, other)]

@@ -24,9 +24,10 @@ def measure(run: RunDirectory) -> Findings:
         )
     except ValueError as error:
         raise RunDirectoryError(f"{run.path / 'fluid_profile.dat'}: {error}") from None
-    maximum = correlated_mean.mean(v_max)
+    maximum = correlated_mean.mean(v_max, run.interval)
     viscosity = viscosity_of_maximum(maximum, gravity, run.width)
-    curvature = viscosity_of_maximum(correlated_mean.mean(v_max - v_wall), gravity, run.width)
+    above_wall = correlated_mean.mean(v_max - v_wall, run.interval)
+    curvature = viscosity_of_maximum(above_wall, gravity, run.width)
     theory = {"theory": run.solvent.viscosity_theory}
     flow_found = slit_flow(run, fit=(float(v_max.mean()), float(v_wall.mean())))
     entries = {
@@ -47,6 +48,4 @@ def viscosity_of_maximum(maximum: Estimate, gravity: float, width: float) -> Est
         return Estimate(None, None, "no gravity")
     if maximum.value is None or maximum.value * gravity <= 0:
         return Estimate(None, None, "the fluid does not flow along gravity")
-    value = gravity * width**2 / (8 * maximum.value)
-    error = None if maximum.error is None else value * maximum.error / abs(maximum.value)
-    return Estimate(value, error, maximum.reason)
+    return gravity * width**2 / 8 / maximum

@@ -10,5 +10,8 @@ def measure(run: RunDirectory) -> Findings:
     table = run.table()
     used = run.sampled(table.steps)
     return Findings(
-        {name: correlated_mean.mean(table[name][used]).as_json() for name in table.columns}
+        {
+            name: correlated_mean.mean(table[name][used], run.interval).as_json()
+            for name in table.columns
+        }
     )

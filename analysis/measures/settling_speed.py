@@ -16,7 +16,10 @@ def measure(run: RunDirectory) -> Findings:
     """Means over time in both frames, and their history."""
     sampled_frames(run)
     series = settling_series(run)
-    moving, rest = (correlated_mean.mean(v[series.used]) for v in (series.co_moving, series.rest))
+    moving, rest = (
+        correlated_mean.mean(speed[series.used], run.interval)
+        for speed in (series.co_moving, series.rest)
+    )
     return Findings(
         {"settling_speed": moving.as_json(), "settling_speed_rest": rest.as_json()},
         {"settling_speed.png": draw(series, run.equilibration_time)},

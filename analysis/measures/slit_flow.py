@@ -23,7 +23,7 @@ def slit_flow(run: RunDirectory, fit: tuple[float, float] | None) -> Findings:
     fluid = run.profile()
     used = run.sampled(fluid.steps)
     counts, velocity = fluid.counts[used], fluid.velocity_x[used]
-    mean_velocity = correlated_mean.mean(flow.mean_velocity(counts, velocity))
+    mean_velocity = correlated_mean.mean(flow.mean_velocity(counts, velocity), run.interval)
     theory = run.solvent.viscosity_theory
     if theory is None:
         reynolds = Estimate(None, None, "kinetic theory has no viscosity for this fluid")

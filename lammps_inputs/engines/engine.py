@@ -1,13 +1,13 @@
 """What an engine says of a system before it runs, and what it writes of one."""
 
 from abc import ABC, abstractmethod
-from collections.abc import Iterator
+from collections.abc import Collection, Iterator
 from dataclasses import dataclass
 from pathlib import Path
 from typing import ClassVar
 
 from lammps_inputs.initial_state import InitialState
-from lammps_inputs.system import SIZES, Motion, PairPotential, System, WallPotential
+from lammps_inputs.system import SIZES, Coupling, Motion, PairPotential, System, WallPotential
 
 
 @dataclass(frozen=True)
@@ -26,7 +26,9 @@ class Engine(ABC):
         plugin: whether LAMMPS needs our compiled styles for each of its decks.
         processes: whether it runs under mpirun.
         pair_potentials, wall_potentials, motions: classes of the parts that it knows.
+        reactions: whether it lets colours react.
         rests: whether it can let a system rest before the run.
+        couplings: of species to a solvent that it knows.
     """
 
     name: ClassVar[str]
@@ -35,7 +37,9 @@ class Engine(ABC):
     pair_potentials: ClassVar[tuple[type[PairPotential], ...]]
     wall_potentials: ClassVar[tuple[type[WallPotential], ...]]
     motions: ClassVar[tuple[type[Motion], ...]]
+    reactions: ClassVar[bool] = False
     rests: ClassVar[bool] = False
+    couplings: ClassVar[tuple[Coupling, ...]] = ("force",)
 
     @abstractmethod
     def problems(self, system: System) -> Iterator[str]:
@@ -65,13 +69,50 @@ class Engine(ABC):
                     yield f"{potential!r} of a wall for {name}: engine {self.name} has no such"
         if not isinstance(system.motion, self.motions):
             yield f"{system.motion!r}: engine {self.name} has no such motion"
+        if system.reactions and not self.reactions:
+            yield f"{system.reactions!r}: engine {self.name} has no such"
         if system.rest and not self.rests:
             yield f"{system.rest!r}: engine {self.name} has no rest before the run"
+        if system.solvent and system.solvent.coupling not in self.couplings:
+            known = " or ".join(self.couplings)
+            yield f"coupling = {system.solvent.coupling!r}: engine {self.name} has {known} only"
+
+    def no_moving_walls(self, system: System) -> Iterator[str]:
+        """A line for each wall that moves."""
+        for wall in system.walls:
+            if any(wall.velocity):
+                yield (
+                    f"wall {wall.side} across the {SIZES[wall.axis]}: engine {self.name} has none "
+                    f"that move, here by {wall.velocity}"
+                )
+
+    def no_balanced_drives(self, system: System) -> Iterator[str]:
+        """A line for each drive that the fluid balances, or removal of the drift it leaves."""
+        for drive in system.drives:
+            if drive.balanced:
+                yield f"{drive.variable} of {drive.target}: engine {self.name} cannot balance it"
+
+    def needs_known_tables(self, system: System, known: Collection[str]) -> Iterator[str]:
+        """A line for each table with a column that the engine does not tell."""
+        for output in system.outputs:
+            unknown = [name for name in output.columns if name not in known]
+            if output.kind == "table" and unknown:
+                yield f"{output.file}: engine {self.name} does not tell {', '.join(unknown)}"
 
     def needs_solvent(self, system: System) -> Iterator[str]:
         """A line where there is no fluid."""
         if system.solvent is None:
-            yield f"engine = {self.name!r}: it is a fluid, and the scene has none; use 'md'"
+            yield f"engine = {self.name!r}: it is a fluid, and the scene has none"
+
+    def needs_walls_or_periodic(self, system: System) -> Iterator[str]:
+        """A line for each axis that is neither periodic nor between two walls."""
+        for axis, periodic in enumerate(system.box.periodic):
+            sides = sorted(wall.side for wall in system.walls_on(axis))
+            if sides != ([] if periodic else ["lower", "upper"]):
+                yield (
+                    f"walls across the {SIZES[axis]}: engine {self.name} needs periodic axes, or a "
+                    "wall on either side"
+                )
 
     def needs_slit_or_periodic(self, system: System) -> Iterator[str]:
         """A line for each axis that is neither periodic nor, across y, between two walls."""

@@ -23,6 +23,8 @@ def force_problems(system: System) -> Iterator[str]:
                 "12-6 repulsion"
             )
     fluid = system.fluid_interactions()
+    if fluid and system.solvent and system.solvent.coupling != "force":
+        yield f"coupling = {system.solvent.coupling!r}: there is no force between species and fluid"
     for species in system.species:
         potential = fluid.get(species.name)
         if not isinstance(potential, RepulsiveMie) or system.solvent is None:

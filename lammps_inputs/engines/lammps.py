@@ -28,16 +28,18 @@ def groups(system: System) -> Iterator[str]:
         yield f"group {particle_group(system)} type {' '.join(map(str, types.values()))}"
 
 
-def pairs(system: System, overlay: str = "") -> Iterator[str]:
-    """The pair style of the species, which `one_pair_style` has checked; another laid over it."""
+def pairs(system: System, overlay: str = "", seed: str = "${seed}") -> Iterator[str]:
+    """The pair style of the species, which `one_pair_style` has checked; another laid over it.
+
+    `seed` is the variable of the deck for a style that draws random numbers.
+    """
     types = system.types()
     between = system.particle_interactions()
     for interaction in between:
         yield f"# {interaction.potential.title} {_between(interaction)}"
     first = between[0].potential
     cutoff = max(interaction.potential.cutoff for interaction in between)
-    arguments = getattr(first, "style_arguments", f" {cutoff!r}")
-    style = f"{first.pair_style}{arguments}"
+    style = f"{first.pair_style}{first.pair_arguments(cutoff, seed)}"
     yield f"pair_style hybrid/overlay {style} {overlay}" if overlay else f"pair_style {style}"
     named = f" {first.pair_style}" if overlay else ""
     missing = {(a, b) for a in types.values() for b in types.values() if a <= b}
@@ -85,6 +87,13 @@ def drives(system: System) -> Iterator[str]:
             yield f"fix {name} {drive.target} gravity ${{{variable}}} vector {direction}"
 
 
+def rotational_temperature(system: System) -> Iterator[str]:
+    """The variable of that name, in 3D: a third of twice the energy of rotation of each."""
+    yield f"compute rotation {particle_group(system)} erotate/sphere"
+    rotating = sum(species.count for species in system.species if species.inertia)
+    yield f"variable rotational_temperature equal 2*c_rotation/{3 * rotating}"
+
+
 def window(system: System) -> str:
     """Nevery, Nrepeat and Nfreq of an average over each sampling interval."""
     look = system.clock.look_steps
@@ -123,10 +132,13 @@ def data_header(system: System, title: str, atoms: int, types: int) -> Iterator[
 
 
 def particle_data(system: System, state: InitialState, title: str) -> Iterable[str]:
-    """The data file of the species alone, of atom style atomic."""
+    """The data file of the species alone, of atom style sphere where they rotate, else atomic."""
     types = max(1, len(system.species))  # LAMMPS needs a type, also of no atoms
     yield from data_header(system, title, system.particles, types)
     masses = [species.mass for species in system.species] or [1.0]
+    if system.rotates:
+        yield from _sphere_data(system, state)
+        return
     yield "\nMasses\n\n"
     yield from (f"{number} {mass!r}\n" for number, mass in enumerate(masses, start=1))
     if not system.particles:
@@ -138,6 +150,19 @@ def particle_data(system: System, state: InitialState, title: str) -> Iterable[s
     yield "\nVelocities\n\n"
     for i, row in enumerate(state.colloid_velocities, start=1):
         yield f"{i} {coordinates(row.tolist())}\n"
+
+
+def _sphere_data(system: System, state: InitialState) -> Iterable[str]:
+    """Of density 1: the deck sets the masses."""
+    kinds, sizes = system.atom_types(), (2 * system.radii).tolist()
+    yield "\nAtoms # sphere\n\n"
+    rows = zip(kinds, sizes, state.colloid_positions.tolist(), strict=True)
+    for i, (kind, size, row) in enumerate(rows, start=1):
+        yield f"{i} {kind} {size!r} 1.0 {coordinates(row)}\n"
+    yield "\nVelocities\n\n"
+    moves = zip(state.colloid_velocities.tolist(), state.colloid_spins.tolist(), strict=True)
+    for i, (row, spin) in enumerate(moves, start=1):
+        yield f"{i} {coordinates(row)} {coordinates(spin)}\n"
 
 
 def coordinates(row: Sequence[float]) -> str:

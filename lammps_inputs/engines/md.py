@@ -47,10 +47,8 @@ class MolecularDynamics(LammpsEngine):
             sides = sorted(wall.side for wall in system.walls_on(axis) if wall.potentials)
             if not periodic and sides != ["lower", "upper"]:
                 yield f"walls across the {SIZES[axis]}: one on either side must repel particles"
+        yield from self.needs_known_tables(system, _expressions(system))
         for output in system.outputs:
-            unknown = [name for name in output.columns if name not in _expressions(system)]
-            if output.kind == "table" and unknown:
-                yield f"{output.file}: engine {self.name} does not tell {', '.join(unknown)}"
             if output.kind == "profile":
                 yield f"{output.file}: engine {self.name} writes no profile"
 

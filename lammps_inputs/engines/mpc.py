@@ -11,11 +11,23 @@ from lammps_inputs.engines import lammps
 from lammps_inputs.engines.engine import LammpsEngine, Start
 from lammps_inputs.engines.force_coupling import force_problems
 from lammps_inputs.initial_state import InitialState
+from lammps_inputs.potentials.dlvo import Dlvo
+from lammps_inputs.potentials.harmonic_wall import HarmonicWall
 from lammps_inputs.potentials.integrated_wall import IntegratedWall
 from lammps_inputs.potentials.repulsive_mie import RepulsiveMie
-from lammps_inputs.system import FLUID, Drive, Solvent, Species, System, VelocityVerlet
+from lammps_inputs.system import (
+    FLUID,
+    FLUID_AVERAGES,
+    SUSPENSION_AVERAGES,
+    Drive,
+    Solvent,
+    Species,
+    System,
+    VelocityVerlet,
+)
 
 SKIN = 0.5  # least of the neighbour list [a0]
+SLOW = 0.1  # drift of species that the fluid carries [a0/t0]
 
 
 class Mpc(LammpsEngine):
@@ -23,22 +35,37 @@ class Mpc(LammpsEngine):
 
     name: ClassVar[str] = "mpc"
     plugin = True
-    pair_potentials = (RepulsiveMie,)
-    wall_potentials = (IntegratedWall,)
+    pair_potentials = (RepulsiveMie, Dlvo)
+    wall_potentials = (IntegratedWall, HarmonicWall)
     motions = (VelocityVerlet,)
+    couplings = ("force", "reflection", "cell")
 
     def problems(self, system: System) -> Iterator[str]:
         yield from self.needs_solvent(system)
         yield from self.unknown_parts(system)
-        yield from self.needs_slit_or_periodic(system)
+        yield from self.needs_walls_or_periodic(system)
+        known = SUSPENSION_AVERAGES if system.rotates else FLUID_AVERAGES
+        yield from self.needs_known_tables(system, known.columns)
         yield from lammps.one_pair_style(system)
         yield from force_problems(system)
+        fluid = system.solvent
+        if (
+            fluid
+            and fluid.thermostat == "layer"
+            and sum(not way for way in system.box.periodic) > 1
+        ):
+            yield ("thermostat = 'layer': there must not be two pairs of walls; use 'monte_carlo'")
 
     def atoms(self, system: System, start: Start) -> Iterator[str]:
+        if system.rotates:
+            yield "atom_style sphere"
         yield "atom_modify sort 0 0.0 # the order of the atoms decides the last bit of sums"
         yield from lammps.read(start)
         if not start.checkpoint:
             yield from lammps.groups(system)
+            if system.rotates:
+                for species in system.species:
+                    yield f"set group {species.name} mass {species.mass!r}"
 
     def interactions(self, system: System) -> Iterator[str]:
         ghosts = _ghost_cutoff(system)
@@ -48,19 +75,22 @@ class Mpc(LammpsEngine):
                 yield from _lists_at_collisions(system)
             yield f"comm_modify cutoff {max(1.0, ghosts)!r}"
             return
+        between = system.particle_interactions()
         yield from lammps.pairs(system)
         yield f"pair_modify {system.particle_interactions()[0].potential.pair_modify}"
         skin = max(SKIN, 2 * max(_travel(system, each) for each in system.species))
         yield f"neighbor {skin:.6g} bin"
         yield from _lists_at_collisions(system)
-        if ghosts > skin + max(i.potential.cutoff for i in system.particle_interactions()):
+        if ghosts > skin + max(i.potential.cutoff for i in between):
             yield f"comm_modify cutoff {ghosts:.6g} # the fluid sees {_group(system)} so far"
+        if any(i.potential.dissipates for i in between):
+            yield "comm_modify vel yes"
 
     def motion(self, system: System) -> Iterator[str]:
         if system.species:
-            yield f"fix motion {_group(system)} nve"
+            yield f"fix motion {_group(system)} {'nve/sphere' if system.rotates else 'nve'}"
         for name, species, potential, faces in lammps.wall_faces(system):
-            assert isinstance(potential, IntegratedWall), "problems() has checked it"
+            assert isinstance(potential, IntegratedWall | HarmonicWall), "problems() has checked it"
             yield potential.wall_fix(name, species, faces)
         yield from lammps.drives(system)
 
@@ -77,10 +107,25 @@ class Mpc(LammpsEngine):
         for species, potential in system.fluid_interactions().items():
             assert isinstance(potential, RepulsiveMie), "problems() has checked it"
             options.append(f"force {types[species]} {potential.epsilon!r} {potential.sigma!r}")
+        if fluid.coupling == "reflection":
+            for each in system.species:
+                options.append(f"reflect {types[each.name]} {each.radius!r} entry")
+        elif fluid.coupling == "cell":
+            options.append("collide yes")
+        for drive in system.drives:
+            if drive.balanced:
+                ways = " ".join(_component(drive, way) for way in drive.direction)
+                options.append(f"compensate {ways}")
+        if fluid.drift_interval:
+            options.append(f"momentum {fluid.drift_interval}")
+        for wall in system.walls:
+            if any(wall.velocity):
+                ways = " ".join(map(repr, wall.velocity[: system.box.dimensions]))
+                options.append(f"wall {'xyz'[wall.axis]}{lammps.FACES[wall.side]} {ways}")
         mode = "append" if start.checkpoint else "file"
         options.append(f"bins {profile_bins(system)}")
         options.append(f"profile {clock.look_steps} ${{sample}} {mode} fluid_profile.dat")
-        coupled = _group(system) if system.fluid_interactions() else "NULL"
+        coupled = _group(system) if system.coupled else "NULL"
         yield "# the MPC solvent"
         yield (
             f"fix solvent all mpc {clock.steps_per_collision} {coupled} 1.0 1.0 ${{seed}} "
@@ -96,6 +141,13 @@ class Mpc(LammpsEngine):
             yield f"variable mean_velocity_x equal {momentum}/(f_solvent[4]+mass({group}))"
         else:
             yield "variable mean_velocity_x equal f_solvent[1]/f_solvent[4]"
+        if system.rotates:
+            group = _group(system)
+            momentum = f"(f_solvent[3]+mass({group})*vcm({group},z))"
+            yield f"variable mean_velocity_z equal {momentum}/(f_solvent[4]+mass({group}))"
+            yield "variable fluid_velocity_x equal f_solvent[1]/f_solvent[4]"
+            yield "variable fluid_velocity_z equal f_solvent[3]/f_solvent[4]"
+            yield from lammps.rotational_temperature(system)
 
     def write(self, system: System, state: InitialState, title: str, directory: Path) -> None:
         with (directory / "state.data").open("w", encoding="utf-8") as file:
@@ -121,7 +173,7 @@ def _component(drive: Drive, way: float) -> str:
     """A component of an acceleration, from the deck's variable."""
     if way in (0, 1):
         return f"${{{drive.variable}}}" if way else "0"
-    return f"$({way!r}*v_{drive.variable})"
+    return f"$({way!r}*v_{drive.variable}:%.17g)"
 
 
 def _fluid(system: System) -> Solvent:
@@ -142,24 +194,34 @@ def _lists_at_collisions(system: System) -> Iterator[str]:
 def _travel(system: System, species: Species) -> float:
     """How far a particle moves in a collision interval, at most: else fix mpc stops [a0].
 
-    Its speed: a drift of at most 1, 7 thermal speeds, and 3 that it may gain.
+    Its speed: a drift, 7 thermal speeds, and 3 that it may gain. The drift is at most 1; between
+    walls that move, what does not meet the fluid by forces is no faster than they are.
     """
-    return _fluid(system).collision_time * (1 + 10 / math.sqrt(species.mass))
+    fluid = _fluid(system)
+    walls = max((max(map(abs, wall.velocity)) for wall in system.walls), default=0.0)
+    drift = 1 if fluid.coupling == "force" else SLOW + walls
+    return fluid.collision_time * (drift + 10 / math.sqrt(species.mass))
 
 
 def _ghost_cutoff(system: System) -> float:
     """How far from its cells the fluid has to see species: what fix mpc asks for [a0].
 
-    1.5 cells, the range of the force, and the flights of one collision interval: 7 thermal speeds
-    of the fluid, and 3 times the fastest particle's. 0 where no species interacts with the fluid.
+    1.5 cells, the range of the force or the radius, and the flights of one collision interval: 7
+    thermal speeds of the fluid, and 3 times the fastest particle's. 0 where the fluid sees none.
     """
-    fluid = system.fluid_interactions()
-    flight = 7 * _fluid(system).collision_time
+    solvent = _fluid(system)
+    if solvent.coupling == "cell":
+        return 0.0
+    forces = system.fluid_interactions()
+    reaches = {name: potential.cutoff for name, potential in forces.items()}
+    if solvent.coupling == "reflection":
+        reaches = {each.name: each.radius for each in system.species}
+    flight = 7 * solvent.collision_time
     return max(
         (
-            1.5 + fluid[each.name].cutoff + flight + 3 * _travel(system, each)
+            1.5 + reaches[each.name] + flight + 3 * _travel(system, each)
             for each in system.species
-            if each.name in fluid
+            if each.name in reaches
         ),
         default=0.0,
     )

@@ -7,7 +7,7 @@ from lammps_inputs.engines.engine import Engine
 from lammps_inputs.engines.force_coupling import force_problems
 from lammps_inputs.potentials.integrated_wall import IntegratedWall
 from lammps_inputs.potentials.repulsive_mie import RepulsiveMie
-from lammps_inputs.system import System, VelocityVerlet
+from lammps_inputs.system import FLUID_AVERAGES, System, VelocityVerlet
 
 
 class Reference(Engine):
@@ -23,6 +23,9 @@ class Reference(Engine):
         yield from self.needs_solvent(system)
         yield from self.unknown_parts(system)
         yield from self.needs_slit_or_periodic(system)
+        yield from self.no_moving_walls(system)
+        yield from self.no_balanced_drives(system)
+        yield from self.needs_known_tables(system, FLUID_AVERAGES.columns)
         yield from force_problems(system)
 
 

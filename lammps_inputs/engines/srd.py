@@ -9,9 +9,19 @@ import numpy as np
 from lammps_inputs.engines import lammps
 from lammps_inputs.engines.engine import LammpsEngine, Start
 from lammps_inputs.initial_state import InitialState
+from lammps_inputs.potentials.dlvo import Dlvo
 from lammps_inputs.potentials.integrated_wall import IntegratedWall
 from lammps_inputs.potentials.repulsive_mie import RepulsiveMie
-from lammps_inputs.system import FLUID, SIZES, Solvent, System, VelocityVerlet
+from lammps_inputs.system import (
+    FLUID,
+    FLUID_AVERAGES,
+    SIZES,
+    SUSPENSION_AVERAGES,
+    Drive,
+    Solvent,
+    System,
+    VelocityVerlet,
+)
 
 SEED_STREAM = 90  # Philox key of the seeds handed to fix srd, one block per start
 
@@ -20,14 +30,18 @@ class Srd(LammpsEngine):
     """The standard method: hard collisions in place of the forces between species and fluid."""
 
     name: ClassVar[str] = "srd"
-    pair_potentials = (RepulsiveMie,)
+    pair_potentials = (RepulsiveMie, Dlvo)
     wall_potentials = (IntegratedWall,)
     motions = (VelocityVerlet,)
+    couplings = ("force", "reflection")
 
     def problems(self, system: System) -> Iterator[str]:
         yield from self.needs_solvent(system)
         yield from self.unknown_parts(system)
         yield from self.needs_slit_or_periodic(system)
+        yield from self.no_moving_walls(system)
+        known = SUSPENSION_AVERAGES if system.rotates else FLUID_AVERAGES
+        yield from self.needs_known_tables(system, known.columns)
         yield from lammps.one_pair_style(system)
         fluid = system.solvent
         if fluid is None:
@@ -48,7 +62,8 @@ class Srd(LammpsEngine):
         if system.box.dimensions == 3 and fluid.rotation != "coordinate_axes":
             yield f"rotation = {fluid.rotation!r}: fix srd rotates about the coordinate_axes only"
         for species in system.species:
-            if species.name not in system.fluid_interactions() or not species.radius:
+            meets = fluid.coupling == "reflection" or species.name in system.fluid_interactions()
+            if not meets or not species.radius:
                 yield f"{species.name}: fix srd needs them to have a radius, and to meet the fluid"
 
     def warnings(self, system: System) -> Iterator[str]:
@@ -99,7 +114,7 @@ class Srd(LammpsEngine):
         yield f"neigh_modify delay 0 every 1 check yes include {group}"
         yield f"comm_modify mode multi group {group} vel yes"
         yield ""
-        yield from lammps.pairs(system)
+        yield from lammps.pairs(system, seed="${seed_collision}")
         first = system.particle_interactions()[0].potential
         yield first.no_pair_coeff(f"* {len(system.species) + 1}")
         yield f"pair_modify {first.pair_modify}"
@@ -124,6 +139,12 @@ class Srd(LammpsEngine):
                         f"fix {name} fluid set 1 0 group fluid v{axis} v_{pulled} "
                         "# fix srd ignores forces"
                     )
+        for drive in system.drives:
+            if drive.balanced:
+                yield from _balance(drive)
+        if system.solvent and system.solvent.drift_interval:
+            steps = system.solvent.drift_interval * system.clock.steps_per_collision
+            yield f"fix drift all momentum {steps} linear 1 1 1"
 
     def solvent(self, system: System, start: Start) -> Iterator[str]:
         yield "# the MPC solvent; fix srd knows hard collisions with colloids and walls only"
@@ -155,6 +176,11 @@ class Srd(LammpsEngine):
         yield f"compute thermal fluid temp/profile 1 0 0 y {bins}"
         yield "variable fluid_temperature equal c_thermal"
         yield "variable mean_velocity_x equal vcm(all,x)"
+        if system.rotates:
+            yield "variable mean_velocity_z equal vcm(all,z)"
+            yield "variable fluid_velocity_x equal vcm(fluid,x)"
+            yield "variable fluid_velocity_z equal vcm(fluid,z)"
+            yield from lammps.rotational_temperature(system)
 
     def write(self, system: System, state: InitialState, title: str, directory: Path) -> None:
         with (directory / "state.data").open("w", encoding="utf-8") as file:
@@ -162,6 +188,16 @@ class Srd(LammpsEngine):
         for name, _, potential, _ in lammps.wall_faces(system):
             assert isinstance(potential, IntegratedWall), "problems() has checked it"
             (directory / f"{name}.table").write_text(potential.table_text(), encoding="utf-8")
+
+
+def _balance(drive: Drive) -> Iterator[str]:
+    """What the fluid gets so that total momentum stays what it is."""
+    for part, axis in zip(drive.direction, "xyz", strict=True):
+        if part:
+            name = f"balance_{drive.variable}_{axis}"
+            share = f"{-part!r}*v_{drive.variable}*dt*mass({drive.target})/count(fluid)"
+            yield f"variable {name} atom v{axis}+{share}"
+            yield f"fix {name} fluid set 1 0 group fluid v{axis} v_{name}"
 
 
 def _fluid(system: System) -> Solvent:

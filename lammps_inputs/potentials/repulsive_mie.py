@@ -35,6 +35,15 @@ class RepulsiveMie:
         """The LAMMPS style."""
         return "mie/cut"
 
+    def pair_arguments(self, cutoff: float, seed: str) -> str:
+        """The cutoff."""
+        return f" {cutoff!r}"
+
+    @property
+    def dissipates(self) -> bool:
+        """No."""
+        return False
+
     @property
     def pair_modify(self) -> str:
         """Arguments of `pair_modify`."""

@@ -47,10 +47,14 @@ class SoftDisk:
         """The LAMMPS style, of our plugin."""
         return "soft/disk"
 
+    def pair_arguments(self, cutoff: float, seed: str) -> str:
+        """The cutoff."""
+        return f" {cutoff!r}"
+
     @property
-    def style_arguments(self) -> str:
-        """Those of the `pair_style` command."""
-        return f" {self.cutoff!r}"
+    def dissipates(self) -> bool:
+        """No."""
+        return False
 
     @property
     def pair_modify(self) -> str:

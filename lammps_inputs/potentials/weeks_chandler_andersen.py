@@ -57,10 +57,14 @@ class WeeksChandlerAndersen:
         """The LAMMPS style, of our plugin."""
         return "wca"
 
-    @property
-    def style_arguments(self) -> str:
-        """Those of the `pair_style` command: none."""
+    def pair_arguments(self, cutoff: float, seed: str) -> str:
+        """None: the cutoff is that of sigma."""
         return ""
+
+    @property
+    def dissipates(self) -> bool:
+        """No."""
+        return False
 
     @property
     def pair_modify(self) -> str:

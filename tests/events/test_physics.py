@@ -4,18 +4,21 @@ import math
 
 import numpy as np
 import pytest
+from numpy.typing import NDArray
 from scipy.spatial import cKDTree
 
 from srd_driver.events import HardSpheres, WallReactions
 
+Array = NDArray[np.float64]
 
-def carnahan_starling(packing):
+
+def carnahan_starling(packing: float) -> float:
     """Z = P V / (N kBT): N. F. Carnahan and K. E. Starling, J. Chem. Phys. 51, 635 (1969)."""
     x = packing
     return (1 + x + x**2 - x**3) / (1 - x) ** 3
 
 
-def kolafa(packing):
+def kolafa(packing: float) -> float:
     """Kolafa's correction of it (T. Boublik and I. Nezbeda, Coll. Czech. Chem. C. 51, 2301, 1986).
 
     At packing 0.35 it is 0.30 % above Carnahan and Starling.
@@ -24,21 +27,21 @@ def kolafa(packing):
     return (1 + x + x**2 - 2 / 3 * x**3 * (1 + x)) / (1 - x) ** 3
 
 
-def bulk(packing, count, seed=1):
+def bulk(packing: float, count: int, seed: int = 1) -> HardSpheres:
     length = (count * math.pi / 6 / packing) ** (1 / 3)
     engine = HardSpheres.fluid(count, 3 * [length], seed=seed)
     engine.advance(20)
     return engine
 
 
-def fitted_contact(distance, density, reach):
+def fitted_contact(distance: Array, density: Array, reach: float) -> float:
     """Value at distance 0 of a quadratic through the logarithms within `reach`."""
     near = distance < reach
     return float(np.exp(np.polyfit(distance[near], np.log(density[near]), 2)[2]))
 
 
 @pytest.mark.parametrize("packing", [0.2, 0.35])
-def test_equation_of_state_and_collision_rate(packing):
+def test_equation_of_state_and_collision_rate(packing: float) -> None:
     """Blocks of the virial; the error is theirs."""
     engine, blocks = bulk(packing, 2000), []
     collisions, virial, time = engine.collisions, engine.virial, engine.time
@@ -47,7 +50,7 @@ def test_equation_of_state_and_collision_rate(packing):
         engine.advance(5.0)
         blocks.append((engine.virial - virial) / (3 * 2000 * 5.0) + 1)
         virial = engine.virial
-    z, error = np.mean(blocks), np.std(blocks, ddof=1) / math.sqrt(20)
+    z, error = float(np.mean(blocks)), float(np.std(blocks, ddof=1)) / math.sqrt(20)
     assert error < 2e-3 * z
     assert z == pytest.approx(kolafa(packing), abs=3 * error + 5e-4 * z)
     assert z == pytest.approx(carnahan_starling(packing), rel=6e-3)
@@ -62,7 +65,8 @@ def test_equation_of_state_and_collision_rate(packing):
 
 
 @pytest.mark.parametrize("packing", [0.2, 0.35])
-def test_contact_value_of_the_pair_correlation(packing):
+@pytest.mark.statistics
+def test_contact_value_of_the_pair_correlation(packing: float) -> None:
     """g(sigma) from positions alone, with a quadratic through the first tenth."""
     engine = bulk(packing, 2000)
     length = engine.lengths[0]
@@ -78,7 +82,8 @@ def test_contact_value_of_the_pair_correlation(packing):
     assert contact == pytest.approx((kolafa(packing) - 1) / (4 * packing), rel=0.012)
 
 
-def test_wall_pressure_is_the_contact_density():
+@pytest.mark.statistics
+def test_wall_pressure_is_the_contact_density() -> None:
     """P = kBT rho at contact (a sum rule): momentum on the walls against the binned density."""
     engine = HardSpheres.fluid(
         1000, [13.0, 13.0, 8.0], walls=(2,), reactions=WallReactions(()), seed=3
@@ -99,7 +104,7 @@ def test_wall_pressure_is_the_contact_density():
 
 
 @pytest.mark.statistics
-def test_energy_and_overlap_over_1e9_collisions():
+def test_energy_and_overlap_over_1e9_collisions() -> None:
     """Half an hour on one core."""
     engine = bulk(0.35, 2000)
     energy, done = engine.energy(), engine.collisions

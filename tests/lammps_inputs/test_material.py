@@ -4,7 +4,8 @@ import math
 
 import pytest
 
-from lammps_inputs.material import Model, Suspension, coulomb_strength, si
+from lammps_inputs.material import Model, Suspension, coulomb_strength
+from lammps_inputs.quantities import si
 
 ALUMINA = Suspension()
 REFLECTING = Model.reflecting(ALUMINA)

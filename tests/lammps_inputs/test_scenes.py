@@ -23,7 +23,7 @@ from lammps_inputs.scenes.channel import Channel
 NAN, INFINITY = float("nan"), float("inf")
 
 BAD: list[tuple[str, dict[str, Any], str]] = [
-    ("chanel", {}, "scene = 'chanel': must be one of bulk, channel, lanes, poiseuille"),
+    ("chanel", {}, "scene = 'chanel': must be one of bulk, "),
     ("channel", {"lenght": 40}, "lenght = 40: unknown field; channel has duration, equilibration"),
     ("poiseuille", {"colloids": 2}, "colloids = 2: unknown field"),
     ("channel", {"length": 40.5}, "length = 40.5: a periodic length must be a whole number"),

@@ -118,7 +118,7 @@ def write_data(start: Mixture, file: Path, rate: float = 0.0) -> None:
 def pair_lines(potential: SoftDisk | WeeksChandlerAndersen) -> str:
     """The pair style of all types."""
     return (
-        f"pair_style {potential.pair_style}{potential.style_arguments}\n"
+        f"pair_style {potential.pair_style}{potential.pair_arguments(potential.cutoff, '')}\n"
         f"pair_modify {potential.pair_modify}\n{potential.pair_coeff('* *')}"
     )
 

@@ -11,7 +11,7 @@ from srd_driver.reference import cell_coupling, thermostats
 from srd_driver.reference.boundaries import Boundaries, stream, virtual_particles
 from srd_driver.reference.collision import Cells, collide, grid_shape, grid_shift
 from srd_driver.reference.counter_random import CounterRandom
-from srd_driver.reference.reflection import Spheres, reflect
+from srd_driver.reference.reflection import Placement, Spheres, reflect
 from srd_driver.reference.rotation import SPHERE
 from tests.conftest import Run
 from tests.plugin.fluid import read_fluid
@@ -142,10 +142,8 @@ class Suspension:
         """Move it in numpy."""
         time = self.tau / STEPS
         for collision in range(collisions):
-            stream(
-                *(self.fluid_positions, self.fluid_velocities),
-                *(self.field, self.tau, self.boundaries),
-            )
+            fluid = (self.fluid_positions, self.fluid_velocities)
+            stream(*fluid, self.field, self.tau, self.boundaries)
             self.boundaries.wrap(self.fluid_positions)
             for _ in range(STEPS):
                 self.velocities += 0.5 * time * self.acceleration
@@ -173,9 +171,10 @@ class Suspension:
             *(self.positions, self.velocities, self.spins),
             *(self.radius * each, self.mass * each, inertia * each),
         )
+        fluid = (self.fluid_positions, self.fluid_velocities)
+        placement: Placement = "entry" if self.coupling == "entry" else "nearest"
         momentum, angular = reflect(
-            *(self.fluid_positions, self.fluid_velocities, spheres, self.coupling),  # type: ignore[arg-type]
-            *(self.tau, 1.0, self.field, self.boundaries, random),
+            *fluid, spheres, placement, self.tau, 1.0, self.field, self.boundaries, random
         )
         self.velocities += momentum / self.mass
         self.spins += angular / inertia
@@ -192,7 +191,8 @@ class Suspension:
         shift = grid_shift(random, self.dimensions)
         shape = grid_shape(self.box, self.periodic)
         cells = Cells.sort(positions, shift, shape, self.periodic)
-        fluid = np.bincount(cells.numbers[: self.fluid_positions.shape[1]], minlength=cells.count)
+        of_fluid = cells.numbers[: self.fluid_positions.shape[1]]
+        fluid = np.bincount(of_fluid, minlength=cells.count).astype(float)
         filled = virtual_particles(self.boundaries, cells, shift, fluid, 1.0, random)
         mean = cell_coupling.mean_velocity(velocities, masses, cells, *filled)
         collide(velocities, cells, mean, 90, "coordinate_axes", random)

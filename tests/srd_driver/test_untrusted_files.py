@@ -1,6 +1,7 @@
 """Run directories and sweeps that somebody else wrote, or that lost a file."""
 
 import json
+import os
 import shutil
 from pathlib import Path
 from typing import Any
@@ -197,7 +198,7 @@ def test_a_kill_while_the_directory_is_made_costs_nothing(
 ) -> None:
     """After every so many files that took their places."""
     left = iter(range(renames))
-    replace = resume.os.replace
+    replace = os.replace
 
     def cut_short(source: Path, target: Path) -> None:
         if next(left, None) is None:

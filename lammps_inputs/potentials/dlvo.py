@@ -31,6 +31,7 @@ class Dlvo:
         friction: of the surfaces in contact, transverse [m_f/t0].
         viscosity: eta of (4) [m_f/(a0 t0)]; 0: no lubrication.
         closest, farthest: gaps at which lubrication is largest, and from which it is zero [a0].
+        error: energy that is neglected beyond the cutoff [kBT].
     """
 
     diameter: float
@@ -44,6 +45,7 @@ class Dlvo:
     viscosity: float = 0.0
     closest: float = 0.01
     farthest: float = 1.0
+    error: float = 0.02
 
     def __post_init__(self) -> None:
         if self.hamaker > 0 and not self.depth > 0:
@@ -141,14 +143,13 @@ class Dlvo:
         friction = 6 * math.pi * self.viscosity * reduced**2 * np.maximum(lubrication, 0.0)
         return np.asarray(friction + self.damping * np.sqrt(np.maximum(-gap, 0.0)))
 
-    def cutoff(self, error: float) -> float:
-        """Distance from which |V| stays below an energy error [kBT]; beyond contact and minimum.
+    @cached_property
+    def cutoff(self) -> float:
+        """Distance from which |V| stays below `error`; beyond contact and minimum [a0].
 
-        Beyond it lies nothing of the secondary minimum: V is bounded there by the sum of (1) and
-        the magnitude of (2), both of which fall with the distance.
+        Nothing of the secondary minimum lies beyond: V is bounded there by the sum of (1) and the
+        magnitude of (2), both of which fall with the distance.
         """
-        if not error > 0:
-            raise ValueError(f"error {error}: must be positive")
 
         def bound(r: float) -> float:
             bound = float(self.coulomb_energy(r))
@@ -156,19 +157,68 @@ class Dlvo:
 
         inner = max(self.joint, self.diameter * (1 + 1e-9))
         outer = inner
-        while bound(outer) > error:
+        while bound(outer) > self.error:
             inner, outer = outer, 1.1 * outer
         for _ in range(100):
             middle = 0.5 * (inner + outer)
-            if bound(middle) > error:
+            if bound(middle) > self.error:
                 inner = middle
             else:
                 outer = middle
         return max(outer, self.diameter * 1.001)
 
-    def pair_style(self, cutoff: float, temperature: float, seed: int) -> str:
-        """The `pair_style` line; the temperature [kBT] is that of the fluctuations, 0 for none."""
-        return f"pair_style dlvo {cutoff!r} {temperature!r} {seed}"
+    @cached_property
+    def reach(self) -> float:
+        """Distance from which on there is neither force nor friction [a0]."""
+        return max(self.cutoff, self.diameter + self.farthest if self.viscosity else 0.0)
+
+    @cached_property
+    def barrier(self) -> float:
+        """Highest energy on the way from far to the parabola [kBT]."""
+        r = np.geomspace(1e-6 * self.diameter, self.cutoff - self.diameter, 4000) + self.diameter
+        return float(self.energy(r[r >= self.joint]).max())
+
+    def stiffest(self, energy: float) -> float:
+        """Largest |d^2 U/dr^2| at distances reached from far with so much energy [kBT/a0^2].
+
+        Overlaps up to a tenth of the radius count where contact is reached.
+        """
+        gaps = np.geomspace(1e-6 * self.diameter, self.cutoff - self.diameter, 4000)
+        overlaps = np.linspace(-0.05 * self.diameter, 0.0, 200)
+        r = self.diameter + np.concatenate([overlaps, gaps])
+        high = np.flatnonzero(self.energy(r) > energy)
+        r = r[high[-1] :] if len(high) else r
+        if len(r) < 3:
+            r = np.linspace(r[0], r[0] + 1e-3 * self.diameter, 10)
+        return float(np.abs(np.diff(self.force(r)) / np.diff(r)).max())
+
+    @property
+    def title(self) -> str:
+        """`DLVO interaction`."""
+        return "DLVO interaction, contact and lubrication"
+
+    @property
+    def pair_style(self) -> str:
+        """The LAMMPS style."""
+        return "dlvo"
+
+    def pair_arguments(self, cutoff: float, seed: str) -> str:
+        """The cutoff, the temperature of the fluctuations, that of the fluid, and their seed."""
+        return f" {cutoff!r} 1.0 {seed}"
+
+    @property
+    def pair_modify(self) -> str:
+        """Arguments of `pair_modify`."""
+        return "shift yes"
+
+    @property
+    def dissipates(self) -> bool:
+        """Whether there is any friction."""
+        return self.damping > 0 or self.friction > 0 or self.viscosity > 0
+
+    def no_pair_coeff(self, types: str) -> str:
+        """The `pair_coeff` line of two atom types that do not interact."""
+        return f"pair_coeff {types} {self.diameter!r}"
 
     def pair_coeff(self, types: str) -> str:
         """The `pair_coeff` line for the two atom types."""

@@ -1,0 +1,103 @@
+"""The scene of hecht-2005 from deck to numbers: both couplings, moving walls, kill and resume."""
+
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pytest
+
+from analysis import RunDirectory, analyze, tabulate
+from lammps_inputs import SceneError, make_scene
+from lammps_inputs.deck import check_engine
+from srd_driver import Simulation, sweep_definition
+from srd_driver.sweep import run_all
+from tests.conftest import Run
+from tests.test_scene_in_one_file import kill_and_resume, same_bytes
+
+SHORT = {"duration": 12, "equilibration": 0}
+CELL = {"cells": 6, "density": 10, "md_steps_per_collision": 150, **SHORT}
+REFLECTION = {"coupling": "reflection", "cells": 15, "peclet": 2, "duration": 8, "equilibration": 0}
+CASES: dict[str, dict[str, Any]] = {
+    "cell": CELL | {"peclet": 1.0},
+    "cell, sheared": CELL | {"boundaries": "bottom", "shear_rate": 0.1, "peclet": 1.0},
+    "reflection": REFLECTION,
+    "reflection, capillary": REFLECTION | {"boundaries": "capillary", "potential": "hertz"},
+}
+
+
+@pytest.mark.parametrize("fields", CASES.values(), ids=CASES)
+def test_deck_driver_and_resumed_run_are_the_same(
+    fields: dict[str, Any], tmp_path: Path, command: Run
+) -> None:
+    """To the last bit, with friction and fluctuations; on two processes to rounding at first."""
+    scene = make_scene("claylike", **fields)
+    for ranks in (1, 2):
+        deck = tmp_path / f"lmp{ranks}"
+        settings = [word for pair in fields.items() for word in ("--set", "{}={}".format(*pair))]
+        command("narrows", "deck", "claylike", *settings, "--out", deck)
+        launcher = ["mpirun", "-np", str(ranks)] if ranks > 1 else []
+        command(*launcher, "lmp", "-in", "in.lammps", cwd=deck)
+    with Simulation(scene, "mpc", tmp_path / "whole") as simulation:
+        simulation.finish()
+    same_bytes(tmp_path / "whole", tmp_path / "lmp1", scene)
+    kill_and_resume(scene, "mpc", tmp_path / "killed")
+    same_bytes(tmp_path / "whole", tmp_path / "killed", scene)
+
+    one, two = (RunDirectory(tmp_path / f"lmp{ranks}").particles() for ranks in (1, 2))
+    np.testing.assert_allclose(one.positions[:3], two.positions[:3], rtol=0, atol=1e-7)
+    summary = analyze(tmp_path / "lmp2")
+    assert summary["finished"]
+    assert {"temperature", "colloid_temperature"} <= summary.keys()
+
+
+def test_total_momentum_stays_zero_while_colloids_settle(tmp_path: Path) -> None:
+    """The fluid balances gravity (VIII A, iii): to rounding at every output."""
+    for name in ("cell", "reflection"):
+        with Simulation(make_scene("claylike", **CASES[name]), "mpc", tmp_path / name) as run:
+            run.finish()
+        table = RunDirectory(tmp_path / name).table()
+        assert abs(table["mean_velocity_z"]).max() < 1e-13
+        assert abs(table["fluid_velocity_z"]).min() > 1e-9, "what the colloids have not"
+
+
+def test_fluid_follows_the_walls(tmp_path: Path) -> None:
+    fields = CASES["cell, sheared"] | {"peclet": 0}
+    with Simulation(make_scene("claylike", **fields), "mpc", tmp_path) as run:
+        run.finish()
+    particles = RunDirectory(tmp_path).particles()
+    upper = particles.positions[-1, :, 2] > 3
+    moved = (particles.positions[-1] - particles.positions[0])[:, 0]
+    assert moved[upper].mean() > 0 > moved[~upper].mean()
+
+
+def test_a_sweep_over_volume_fractions(tmp_path: Path) -> None:
+    swept = sweep_definition.plan(
+        tmp_path, "claylike", CELL, {"volume_fraction": [0.07, 0.14]}, 1, "mpc"
+    )
+    assert run_all(sweep_definition.store(swept).runs, jobs=2) == []
+    assert len(tabulate(tmp_path, jobs=1).rows) == 2
+
+
+def test_fix_srd_runs_the_reflecting_suspension(tmp_path: Path) -> None:
+    fast = {"thermostat": "layer", "potential": "hertz", "md_steps_per_collision": 30}
+    scene = make_scene("claylike", **REFLECTION | fast | {"duration": 3})
+    with Simulation(scene, "srd", tmp_path) as run:
+        run.finish()
+    table = RunDirectory(tmp_path).table()
+    alone = scene.system.drives[0].magnitude * scene.system.clock.end / 3  # a third of the mass
+    assert abs(table["mean_velocity_z"]).max() < 0.1 * alone, "fix srd keeps momentum roughly"
+    assert abs(table["fluid_temperature"].mean() - 1) < 0.05
+
+
+REFUSALS = {
+    ("srd", "cell"): r"coupling = 'cell': engine srd has .* only",
+    ("md", "cell"): "engine = 'md': it has no fluid",
+    ("reference", "cell"): "coupling = 'cell': engine reference has force only",
+    ("srd", "reflection"): "thermostat = 'monte_carlo': fix srd rescales",
+}
+
+
+@pytest.mark.parametrize(("engine", "coupling"), REFUSALS)
+def test_other_engines_refuse_by_name(engine: str, coupling: str) -> None:
+    with pytest.raises(SceneError, match=REFUSALS[engine, coupling]):
+        check_engine(make_scene("claylike", coupling=coupling), engine)
