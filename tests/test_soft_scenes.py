@@ -266,6 +266,15 @@ def test_a_start_that_is_not_there_is_named(tmp_path: Path) -> None:
         simulation.finish()  # a run needs its start no more once it is begun
 
 
+def test_a_flow_that_begins_too_suddenly_is_warned_of_and_stops_by_name(tmp_path: Path) -> None:
+    scene = make_scene(
+        "shear", rate=35.0, thermostat="configurational", rest=2.0, sampling_interval=0.1
+    )
+    assert any("rate = 35.0: the flow begins at once" in text for text in warnings(scene, "md"))
+    with pytest.raises(RunError, match=r"would move by .* too long for this field"):
+        finish(scene, tmp_path / "run")
+
+
 def test_a_step_too_long_for_the_field_is_named_when_it_shows(tmp_path: Path) -> None:
     scene = lanes(thermostat="configurational", field=50.0, time_step=0.004, duration=50.0)
     assert any("time_step = 0.004: long for a field of 50.0" in w for w in warnings(scene, "md"))
