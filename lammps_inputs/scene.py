@@ -15,6 +15,7 @@ from typing import Annotated, Any, ClassVar, Self
 import tomli_w
 from pydantic import BaseModel, ConfigDict, Field, ValidationError
 
+from lammps_inputs.comparison import Laboratory
 from lammps_inputs.system import System
 
 Positive = Annotated[float, Field(gt=0)]
@@ -81,6 +82,15 @@ class Scene(BaseModel, ABC):
         if problems:
             raise SceneError(problems)
         return scene
+
+    @classmethod
+    def of_laboratory(cls, **fields: Any) -> tuple[Self, Laboratory]:
+        """The scene that stands for a system of the laboratory, and what it keeps of it.
+
+        Raises:
+            SceneError: for wrong fields, or a scene that stands for none.
+        """
+        raise SceneError([f"scene {cls.name}: stands for nothing in the laboratory"])
 
     @cached_property
     def system(self) -> System:

@@ -4,10 +4,12 @@ import math
 from collections.abc import Iterator
 from dataclasses import replace
 from functools import cached_property
-from typing import Annotated, Any, ClassVar, Literal
+from typing import Annotated, Any, ClassVar, Literal, Self
 
 from pydantic import BeforeValidator, Field, ValidationError, model_validator
 
+from lammps_inputs.comparison import Laboratory
+from lammps_inputs.laboratory import suspension_rows
 from lammps_inputs.limits import SOUND, solvent_warnings
 from lammps_inputs.material import Model, Suspension
 from lammps_inputs.placement import Lattice, lattice_cells
@@ -177,6 +179,28 @@ class Claylike(Scene):
             except ValueError as error:
                 raise ValueError(f"{name}: {error}") from None
         return given | times
+
+    @classmethod
+    def of_laboratory(cls, **fields: Any) -> tuple[Self, Laboratory]:
+        """The suspension of these fields; without `peclet` it settles on Earth.
+
+        Raises:
+            SceneError: for wrong fields.
+        """
+        scene = cls.make(**fields)
+        on_earth = scene.model.suspension.time_scales().peclet
+        if "peclet" not in fields:
+            scene = cls.make(**fields, peclet=on_earth)
+        pulled = replace(scene.model.suspension, gravity=9.81 * scene.peclet / on_earth)
+        model = replace(scene.model, suspension=pulled)
+        units = {
+            "a0": model.cell,
+            "t0": model.time_unit,
+            "m_f": model.fluid_mass,
+            "kBT": model.thermal_energy,
+        }
+        lost = tuple(model.time_scales().lost_order())
+        return scene, Laboratory(suspension_rows(model), units, lost)
 
     @property
     def edge(self) -> float:
