@@ -123,11 +123,11 @@ def diffusion(x: Array, velocity: Array, interval: float) -> Diffusion:
     def integral(vacf: Array) -> float:
         return float(integrate.trapezoid(vacf, times))
 
-    exponent = _jackknife(exponent_of, msds)
+    exponent = jackknife(exponent_of, msds)
     assert exponent.value is not None
     assert exponent.error is not None
     subdiffusive = exponent.value < 1 - SIGNIFICANT * exponent.error
-    from_msd, from_vacf = _jackknife(half_slope, msds), _jackknife(integral, vacfs)
+    from_msd, from_vacf = jackknife(half_slope, msds), jackknife(integral, vacfs)
     vacf = vacfs.mean(axis=0)
     if vacf[1] < RESOLVED_DECAY * vacf[0]:
         reason = f"the VACF falls to {vacf[1] / vacf[0]:.2g} of its start in one sampling interval"
@@ -142,7 +142,7 @@ def diffusion(x: Array, velocity: Array, interval: float) -> Diffusion:
     )
 
 
-def _jackknife(statistic: Callable[[Array], float], segments: Array) -> Estimate:
+def jackknife(statistic: Callable[[Array], float], segments: Array) -> Estimate:
     """The statistic of the mean over segments, (S, ...), and its delete-one jackknife error."""
     count = len(segments)
     left_out = np.array([statistic(np.delete(segments, n, 0).mean(axis=0)) for n in range(count)])

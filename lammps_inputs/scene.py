@@ -97,6 +97,11 @@ class Scene(BaseModel, ABC):
         """The system that the scene stands for: all that engines and measures know of it."""
         return self.build()
 
+    @property
+    def si_units(self) -> dict[str, float]:
+        """a0 [m], t0 [s], m_f [kg] and kBT [J], where the scene is of something in particular."""
+        return {}
+
     @abstractmethod
     def build(self) -> System:
         """The parts of the system."""

@@ -193,14 +193,8 @@ class Claylike(Scene):
             scene = cls.make(**fields, peclet=on_earth)
         pulled = replace(scene.model.suspension, gravity=9.81 * scene.peclet / on_earth)
         model = replace(scene.model, suspension=pulled)
-        units = {
-            "a0": model.cell,
-            "t0": model.time_unit,
-            "m_f": model.fluid_mass,
-            "kBT": model.thermal_energy,
-        }
         lost = tuple(model.time_scales().lost_order())
-        return scene, Laboratory(suspension_rows(model), units, lost)
+        return scene, Laboratory(suspension_rows(model), scene.si_units, lost)
 
     @property
     def edge(self) -> float:
@@ -239,6 +233,16 @@ class Claylike(Scene):
             none = replace(full, coulomb=0.0, hamaker=0.0, hertz=0.0, friction=0.0, damping=0.0)
             return none if lubrication else None
         return full
+
+    @property
+    def si_units(self) -> dict[str, float]:
+        """Of the simulation, whose kBT is not that of the laboratory."""
+        return {
+            "a0": self.model.cell,
+            "t0": self.model.time_unit,
+            "m_f": self.model.fluid_mass,
+            "kBT": self.model.thermal_energy,
+        }
 
     @property
     def sphere_volume(self) -> float:
@@ -311,7 +315,17 @@ class Claylike(Scene):
                 drift_interval=0 if walls or self.hydrodynamics == "bath" else DRIFT_INTERVAL,
             ),
             outputs=(TRAJECTORY, FLUID_PROFILE, SUSPENSION_AVERAGES),
-            measures=("fluid_temperature", "colloid_temperature"),
+            measures=(
+                "fluid_temperature",
+                "colloid_temperature",
+                "rotational_temperature",
+                "sedimentation",
+                "suspension_diffusion",
+                "velocity_distribution",
+                *(("clusters",) if self.colloids > 1 else ()),
+                *(("radial_distribution",) if self.colloids > 1 and not walls else ()),
+                *(("shear_flow",) if self.shear_rate else ()),
+            ),
         )
 
     def problems(self) -> Iterator[str]:
