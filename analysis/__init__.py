@@ -5,7 +5,7 @@ file of `measures/`, and the other modules hold the physics, arrays in and array
 """
 
 from analysis.analyze import analyze
-from analysis.blocking import Estimate
+from analysis.estimate import Estimate
 from analysis.run_directory import RunDirectory
 from analysis.sweep_table import SweepTable, tabulate
 from run_files import RunDirectoryError

@@ -1,7 +1,9 @@
 """`summary.json` and the figures of a run; `docs/analysis.md` says what every key means."""
 
+import csv
+import io
 import json
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from pathlib import Path
 from typing import Any
 
@@ -17,7 +19,7 @@ SUMMARY = "summary.json"
 
 
 def analyze(directory: str | Path) -> dict[str, Any]:
-    """Analyses a run and writes summary.json and the figures into its directory.
+    """Analyses a run and writes summary.json, figures and tables into its directory.
 
     Args:
         directory: of the run, finished or in progress.
@@ -43,8 +45,22 @@ def analyze(directory: str | Path) -> dict[str, Any]:
     summary["figures"] = sorted(figures)
     for name, figure in figures.items():
         figure.savefig(run.path / name, dpi=150)
+    tables = {name: table for findings in found for name, table in findings.tables.items()}
+    if tables:
+        summary["tables"] = sorted(tables)
+    for name, columns in tables.items():
+        replace_text(run.path / name, _as_csv(columns))
     replace_text(run.path / SUMMARY, json.dumps(summary, indent=2, allow_nan=False) + "\n")
     return summary
+
+
+def _as_csv(columns: Mapping[str, Sequence[Any]]) -> str:
+    """Columns of equal length as CSV, their names first."""
+    text = io.StringIO()
+    writer = csv.writer(text, lineterminator="\n")
+    writer.writerow(columns)
+    writer.writerows(zip(*columns.values(), strict=True))
+    return text.getvalue()
 
 
 def is_analysed(directory: Path) -> bool:

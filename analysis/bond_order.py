@@ -5,9 +5,10 @@ Neighbours are those of the Voronoi construction, by freud (which computes in si
 
 from dataclasses import dataclass
 
-import freud
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
+
+from analysis.voronoi_library import freud
 
 Array = NDArray[np.float64]
 

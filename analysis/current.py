@@ -3,7 +3,8 @@
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from analysis.blocking import Estimate, mean
+from analysis.correlated_mean import mean
+from analysis.estimate import Estimate
 
 Array = NDArray[np.float64]
 

@@ -4,14 +4,13 @@ Correlations by the Wiener-Khinchin theorem, O(T log T): P. de Buyl, "tidynamics
 (2018).
 """
 
-from collections.abc import Callable
 from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import NDArray
 from scipy import fft, integrate
 
-from analysis.blocking import Estimate
+from analysis.estimate import Estimate, jackknife
 
 Array = NDArray[np.float64]
 
@@ -115,18 +114,17 @@ def diffusion(x: Array, velocity: Array, interval: float) -> Diffusion:
         raise ValueError("the colloids do not move about their drift")
 
     def exponent_of(msd: Array) -> float:
-        return float(np.polyfit(np.log(times[lags]), np.log(msd[lags]), 1)[0])
+        return _slope(np.log(times[lags]), np.log(msd[lags]))
 
     def half_slope(msd: Array) -> float:
-        return float(np.polyfit(times[lags], msd[lags], 1)[0]) / 2
+        return _slope(times[lags], msd[lags]) / 2
 
     def integral(vacf: Array) -> float:
         return float(integrate.trapezoid(vacf, times))
 
     exponent = jackknife(exponent_of, msds)
-    assert exponent.value is not None
-    assert exponent.error is not None
-    subdiffusive = exponent.value < 1 - SIGNIFICANT * exponent.error
+    below = SIGNIFICANT * exponent.standard_error
+    subdiffusive = exponent.number < 1 - below
     from_msd, from_vacf = jackknife(half_slope, msds), jackknife(integral, vacfs)
     vacf = vacfs.mean(axis=0)
     if vacf[1] < RESOLVED_DECAY * vacf[0]:
@@ -134,7 +132,7 @@ def diffusion(x: Array, velocity: Array, interval: float) -> Diffusion:
         from_vacf = Estimate(None, None, reason)
     if subdiffusive:
         from_msd = from_vacf = Estimate(None, None, "subdiffusive")
-    elif exponent.value > 1 + SIGNIFICANT * exponent.error:
+    elif exponent.number > 1 + below:
         from_msd = from_vacf = Estimate(None, None, "superdiffusive: the drift is not uniform")
     window = (float(times[lags[0]]), float(times[lags[-1]]))
     return Diffusion(
@@ -142,9 +140,5 @@ def diffusion(x: Array, velocity: Array, interval: float) -> Diffusion:
     )
 
 
-def jackknife(statistic: Callable[[Array], float], segments: Array) -> Estimate:
-    """The statistic of the mean over segments, (S, ...), and its delete-one jackknife error."""
-    count = len(segments)
-    left_out = np.array([statistic(np.delete(segments, n, 0).mean(axis=0)) for n in range(count)])
-    error = np.sqrt((count - 1) * left_out.var())
-    return Estimate(statistic(segments.mean(axis=0)), float(error))
+def _slope(x: Array, y: Array) -> float:
+    return float(np.polynomial.polynomial.polyfit(x, y, 1)[1])

@@ -4,7 +4,7 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.spatial import KDTree
 
-from analysis.blocking import Estimate
+from analysis.estimate import Estimate
 from run_files.manifest import Box
 
 Array = NDArray[np.float64]

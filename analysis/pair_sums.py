@@ -40,7 +40,7 @@ def pair_sums(
         positions: (T, N, D), wrapped or not.
         lengths: of the periodic box, (D,), at least twice the cutoff.
         derivatives: energy and its derivatives by the distance, of distances (pairs,); of
-            `lammps_inputs.soft_potentials`, for one.
+            `lammps_inputs.potentials.soft_disk`, for one.
         cutoff: beyond which pairs do not interact.
     """
     rows = [_frame(frame, lengths, derivatives, cutoff) for frame in positions]

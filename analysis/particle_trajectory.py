@@ -19,7 +19,8 @@ class ParticleTrajectory(AnalysisBase):  # type: ignore[misc]  # MDAnalysis has 
 
     After `run()`, `results` holds:
         steps: engine steps, (T,).
-        positions: unwrapped centres, from the lower corner of the box, (T, N, d) [a0].
+        positions: unwrapped centres, from the lower corner of the box, (T, N, d) [a0]. In a sheared
+            box images are counted as if it were not: modulo its edges they are right.
         velocities: (T, N, d) [a0/t0].
     """
 
@@ -38,7 +39,7 @@ class ParticleTrajectory(AnalysisBase):  # type: ignore[misc]  # MDAnalysis has 
         frame, axes = self._frame_index, slice(0, self._dimension)
         data = self._ts.data
         images = np.column_stack([data[axis] for axis in ("ix", "iy", "iz")])[:, axes]
-        box = self._ts.dimensions[axes].astype(float)
+        box = np.diagonal(self._ts.triclinic_dimensions)[axes].astype(float)
         self.results.steps[frame] = data["step"]
         self.results.positions[frame] = self._atoms.positions[:, axes] + images * box
         self.results.velocities[frame] = self._atoms.velocities[:, axes]

@@ -44,6 +44,25 @@ class Table:
 
 
 @dataclass(frozen=True)
+class Bins:
+    """Averages by bins over each sampling interval.
+
+    Attributes:
+        steps: last engine step of each interval, (K,).
+        positions: bin centres, (bins,).
+        columns: by name, each (K, bins).
+    """
+
+    steps: Steps
+    positions: Array
+    columns: Mapping[str, Array]
+
+    def __getitem__(self, name: str) -> Array:
+        """The column of that name, (K, bins)."""
+        return self.columns[name]
+
+
+@dataclass(frozen=True)
 class Profile:
     """The fluid by bins of y, averages over each sampling interval.
 
@@ -97,7 +116,7 @@ class RunDirectory:
     def __init__(self, path: str | Path) -> None:
         self.path = Path(path)
         self.manifest = read_manifest(self.path)
-        self._profiles: dict[str, Profile] = {}
+        self._bins: dict[tuple[str, ...], Bins] = {}
         self._tables: dict[str, Table] = {}
         self._particles: dict[str, Particles] = {}
 
@@ -204,7 +223,12 @@ class RunDirectory:
         Raises:
             RunDirectoryError: when the file is damaged.
         """
-        return read_progress(self.path) if is_begun(self.path) else None
+        if not is_begun(self.path):
+            return None
+        progress = read_progress(self.path)
+        if progress.finished and progress.step < self.clock.total_steps:
+            refuse(self.path, f"finished at step {progress.step} of {self.clock.total_steps}")
+        return progress
 
     def _checked(self, name: str) -> Path:
         """The path of an output, once it begins with what it held at the newest checkpoint.
@@ -272,18 +296,31 @@ class RunDirectory:
         return Table(steps, dict(zip(output.columns, table[:, 1:].T, strict=True)))
 
     def profile(self, name: str = "fluid_profile") -> Profile:
+        """A profile of the fluid, by the name of its file.
+
+        Raises:
+            RunDirectoryError: as `bins`.
+        """
+        read = self.bins(name, ("Ncount", "vx"))
+        return Profile(read.steps, read.positions, read["Ncount"], read["vx"])
+
+    def bins(self, name: str, columns: Sequence[str] | None = None) -> Bins:
         """An output of kind `profile`, by the name of its file.
+
+        Args:
+            columns: those wanted; default: all that the manifest names.
 
         Raises:
             RunDirectoryError: when it is missing, malformed, empty or has gaps.
         """
-        if name not in self._profiles:
-            self._profiles[name] = self._read_profile(self._output(name, "profile").file)
-        return self._profiles[name]
+        output = self._output(name, "profile")
+        wanted = [each for each in columns or output.columns if each != "Coord1"]
+        if (name, *wanted) not in self._bins:
+            self._bins[name, *wanted] = self._read_bins(output.file, wanted)
+        return self._bins[name, *wanted]
 
-    def _read_profile(self, name: str) -> Profile:
-        wanted = ["Coord1", "Ncount", "vx"]
-        columns, count, numbers = self._read_table(name, "Chunk Coord1", wanted)
+    def _read_bins(self, name: str, wanted: list[str]) -> Bins:
+        columns, count, numbers = self._read_table(name, "Chunk Coord1", ["Coord1", *wanted])
         if len(numbers) < 3:
             raise RunDirectoryError(f"{self.path / name}: no complete sampling interval yet")
         bins = numbers[1]  # each interval: step, number of bins, particles; then the bins
@@ -293,9 +330,9 @@ class RunDirectory:
         if np.any(rows[:, 1] != bins):
             raise RunDirectoryError(f"{self.path / name}: the number of bins is not constant")
         table = rows[:, 3:].reshape(len(rows), int(bins), count)
-        y, counts, velocity = (table[:, :, column] for column in columns)
+        positions, *values = (table[:, :, column] for column in columns)
         steps = self._check_steps(name, rows[:, 0], first=self.clock.sample_steps)
-        return Profile(steps, y[0], counts, velocity)
+        return Bins(steps, positions[0], dict(zip(wanted, values, strict=True)))
 
     def universe(self, name: str = "trajectory") -> MDAnalysis.Universe:
         """The particles as an MDAnalysis Universe: wrapped positions, masses, time from the step.
@@ -330,7 +367,8 @@ class RunDirectory:
                 f"{self.path / name}: {universe.atoms.n_atoms} particles; the manifest says "
                 f"{expected}"
             )
-        for edge, size in zip(first.dimensions, self.box.sizes, strict=False):
+        edges = np.diagonal(first.triclinic_dimensions)
+        for edge, size in zip(edges, self.box.sizes, strict=False):
             if abs(edge - size) > BOX_PRECISION * size:
                 refuse(path, f"a box edge of {edge:g}; the manifest says {size:g}")
         universe.atoms.masses = self._each_particle("mass")

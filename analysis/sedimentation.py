@@ -1,11 +1,13 @@
 """Settling speed in the frames that are in use (hecht-2005, VIII A and 37)."""
 
-from dataclasses import dataclass
+import math
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from analysis.blocking import Estimate
+from analysis.estimate import Estimate
 from analysis.line_fit import fit_polynomial
 
 Array = NDArray[np.float64]
@@ -42,7 +44,7 @@ def settling_speeds(
 
 
 def richardson_zaki(
-    volume_fractions: ArrayLike, speeds: ArrayLike, errors: ArrayLike
+    volume_fractions: ArrayLike, speeds: Sequence[Estimate]
 ) -> tuple[Estimate, Estimate]:
     """v_inf [a0/t0] and the exponent l of v = v_inf (1 - phi)^l (37), of the logarithms.
 
@@ -51,11 +53,13 @@ def richardson_zaki(
     Raises:
         ValueError: for too few speeds, or one that is not positive.
     """
-    phi, speed, error = (np.asarray(a, dtype=float) for a in (volume_fractions, speeds, errors))
-    if not (speed > 0).all():
-        raise ValueError(f"speeds {speed}: must be positive")
-    offset, exponent = fit_polynomial(np.log1p(-phi), np.log(speed), error / speed)
-    assert offset.value is not None
-    assert offset.error is not None
-    single = float(np.exp(offset.value))
-    return Estimate(single, single * offset.error), exponent
+    for speed in speeds:
+        if not speed.number > 0:
+            raise ValueError(f"a speed of {speed.number}: must be positive")
+    logarithms = [
+        replace(v, value=math.log(v.number), error=v.standard_error / v.number) for v in speeds
+    ]
+    porosity = np.log1p(-np.asarray(volume_fractions, dtype=float))
+    offset, exponent = fit_polynomial(porosity, logarithms).coefficients
+    single = math.exp(offset.number)
+    return replace(offset, value=single, error=single * offset.standard_error), exponent

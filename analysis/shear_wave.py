@@ -7,7 +7,7 @@ from numpy.typing import NDArray
 from scipy.linalg import cholesky_banded, solve_banded
 from scipy.optimize import minimize_scalar
 
-from analysis.blocking import Estimate
+from analysis.estimate import Estimate
 from analysis.flow import momentum_profile
 
 Array = NDArray[np.float64]
@@ -40,7 +40,8 @@ def decay_viscosity(amplitude: Array, interval: float, samples: int, width: floa
     exp(-gamma dt). Of its means over intervals, D_n = A_(n+1) - exp(-gamma interval) A_n no longer
     holds the wave and is Gaussian noise correlated with D_(n+-1) only. gamma has the greatest
     likelihood of all D_n, their noise strength eliminated; its error is the likelihood's
-    curvature. The whole record counts, also where the wave is lost in noise.
+    curvature, with as many degrees of freedom as there are D_n, less one for the strength. The
+    whole record counts, also where the wave is lost in noise.
 
     Args:
         amplitude: means over consecutive sampling intervals, (K,) [a0/t0].
@@ -65,7 +66,7 @@ def decay_viscosity(amplitude: Array, interval: float, samples: int, width: floa
     if min(best - slowest, fastest - best) < step or curvature <= 0:
         return Estimate(None, None, "the decay is not resolved by the sampled times")
     viscosity = math.exp(best) * (width / (2 * math.pi)) ** 2
-    return Estimate(viscosity, viscosity / math.sqrt(curvature))
+    return Estimate(viscosity, viscosity / math.sqrt(curvature), None, count - 2)
 
 
 def _minus_log_likelihood(rate: float, amplitude: Array, interval: float, samples: int) -> float:

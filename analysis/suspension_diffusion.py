@@ -6,18 +6,17 @@ exact for any interval, and for an interval of one collision it is the paper's.
 """
 
 import math
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 from numpy.typing import NDArray
 
-from analysis.blocking import Estimate
 from analysis.diffusion import (
     SEGMENTS,
     autocorrelation,
-    jackknife,
     mean_squared_displacement,
 )
+from analysis.estimate import Estimate, jackknife
 
 Array = NDArray[np.float64]
 
@@ -100,4 +99,4 @@ def infinite_box(diffusion: Estimate, viscosity: float, edge: float) -> Estimate
     if diffusion.value is None:
         return diffusion
     more = CUBIC / (6 * math.pi * viscosity * edge)
-    return Estimate(diffusion.value + more, diffusion.error, diffusion.reason)
+    return replace(diffusion, value=diffusion.value + more)

@@ -3,7 +3,6 @@
 import csv
 import io
 import json
-import math
 import signal
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from concurrent.futures import Future, ProcessPoolExecutor, as_completed
@@ -13,17 +12,13 @@ from multiprocessing import get_context
 from pathlib import Path
 from typing import Any
 
-import numpy as np
-
 from analysis.analyze import SUMMARY, analyze, estimates, is_analysed
-from analysis.blocking import Estimate, mean_of_independent
+from analysis.estimate import Estimate, mean_of_repeats
 from run_files import RunDirectoryError
 from run_files.progress import is_begun, read_progress
 from run_files.reading import read_json
 from run_files.sweep_file import SweptRun, read_sweep
 from run_files.writing import replace_text
-
-MIN_REPEATS = 4  # an error from the spread of R numbers is itself uncertain by 1/sqrt(2(R - 1))
 
 Row = dict[str, Any]
 
@@ -44,35 +39,6 @@ class SweepTable:
     finished: int
     runs: int
     problems: list[str]
-
-
-def combine(repeats: Sequence[Estimate]) -> Estimate:
-    """The mean of independent repeats of one measurement, with its error.
-
-    From `MIN_REPEATS` on the error is that of their spread, s / sqrt(R) with s^2 = sum (x - mean)^2
-    / (R - 1), unbiased whatever the correlations within a run are. Fewer repeats have their own
-    errors combined, sqrt(sum e^2) / R; where one is missing it is the spread's again, and the
-    reason says that it is poor. Repeats without a value are left out.
-    """
-    known = [estimate for estimate in repeats if estimate.value is not None]
-    if len(repeats) == 1 or not known:
-        return repeats[0]
-    values = np.array([estimate.value for estimate in known], dtype=float)
-    errors = [estimate.error for estimate in known if estimate.error is not None]
-    count = len(known)
-    value = float(values.mean())
-    notes = [] if count == len(repeats) else [f"{count} of {len(repeats)} repeats tell it"]
-    error: float | None
-    if count < MIN_REPEATS and len(errors) == count:
-        error = math.hypot(*errors) / count
-        notes += dict.fromkeys(estimate.reason for estimate in known if estimate.reason)
-    elif count > 1:
-        error = mean_of_independent(values).error
-        if count < MIN_REPEATS:
-            notes.append(f"from the spread of only {count} repeats")
-    else:
-        error = None
-    return Estimate(value, error, "; ".join(notes) or None)
 
 
 def tabulate(
@@ -117,10 +83,7 @@ def tabulate(
 
 
 def _read_estimates(path: Path) -> dict[str, Estimate]:
-    return {
-        name: Estimate(entry["value"], entry["error"], entry.get("reason"))
-        for name, entry in estimates(read_json(path)).items()
-    }
+    return {name: Estimate.of_json(entry) for name, entry in estimates(read_json(path)).items()}
 
 
 def _finished(path: Path, run: SweptRun) -> bool:
@@ -188,7 +151,7 @@ def _rows(
             found = [
                 summaries[name][quantity] for name in points[point] if quantity in summaries[name]
             ]
-            estimate = combine(found) if found else Estimate(None, None)
+            estimate = mean_of_repeats(found) if found else Estimate(None, None)
             row |= {quantity: estimate.value, f"{quantity}_error": estimate.error}
             if estimate.reason:
                 notes.append(f"{quantity}: {estimate.reason}")

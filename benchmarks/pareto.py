@@ -28,11 +28,11 @@ import numpy as np
 from matplotlib.figure import Figure
 
 from analysis.analyze import summary_of
-from analysis.blocking import Estimate
-from analysis.sweep_table import combine
+from analysis.estimate import Estimate, mean_of_repeats
 from lammps_inputs import Scene, make_scene
 from lammps_inputs.scenes.channel import Channel
 from lammps_inputs.viscosity import solvent_viscosity
+from narrows.markdown import replace_block, table
 from processor_time import cost, endless
 from run_files.writing import replace_text
 from srd_driver.sweep import Run, available_cores, run_all
@@ -318,7 +318,7 @@ def evaluate(
     }
     for quantity in study.quantities:
         told = {
-            chosen: combine([quantity.measure(*one) for one in of_runs])
+            chosen: mean_of_repeats([quantity.measure(*one) for one in of_runs])
             for chosen, of_runs in summaries.items()
         }
         if isinstance(quantity.truth, Setting):
@@ -363,17 +363,14 @@ def recommended(results: list[Result]) -> str:
 
 def full_table(results: list[Result]) -> str:
     """Every measured number."""
-    rows = [
-        "| quantity | setting | value | deviation | error after 10 s, statistical |",
-        "|---|---|---|---|---|",
-    ]
-    for one in results:
-        after = one.statistical * math.sqrt(one.seconds / 10)
-        rows.append(
-            f"| {one.quantity} | {one.setting} | {one.value:.4g} | "
-            f"{one.deviation:+.2%} +- {one.deviation_error:.2%} | {after:.2%} |"
-        )
-    return "\n".join(rows)
+    columns = ("quantity", "setting", "value", "deviation", "error after 10 s, statistical")
+    rows = []
+    for result in results:
+        after = result.statistical * math.sqrt(result.seconds / 10)
+        deviation = f"{result.deviation:+.2%} +- {result.deviation_error:.2%}"
+        numbers = (f"{result.value:.4g}", deviation, f"{after:.2%}")
+        rows.append((result.quantity, str(result.setting), *numbers))
+    return table(columns, rows)
 
 
 def draw(results: list[Result], file: Path) -> None:
@@ -403,6 +400,7 @@ def main() -> None:
     parser.add_argument("--out", type=Path, required=True, help="folder of the runs")
     parser.add_argument("--quick", action="store_true", help=f"{QUICK_BUDGET:g} s a setting")
     parser.add_argument("--jobs", type=int, default=available_cores())
+    parser.add_argument("--page", type=Path, help="Markdown page whose table is renewed")
     options = parser.parse_args()
     folder: Path = options.out
     folder.mkdir(parents=True, exist_ok=True)
@@ -429,6 +427,8 @@ def main() -> None:
     print(text)
     (folder / "pareto.md").write_text(text, encoding="utf-8")
     draw(results, folder / "pareto.png")
+    if options.page:
+        replace_block(options.page, "pareto", full_table(results))
 
 
 if __name__ == "__main__":

@@ -11,17 +11,18 @@ from lammps_inputs.engines import engine_named, lammps_engine_named
 from lammps_inputs.engines.engine import LammpsEngine, Start
 from lammps_inputs.engines.lammps import table, trajectory
 from lammps_inputs.initial_state import initial_state
+from lammps_inputs.limits import memory_problems
 from lammps_inputs.scene import Scene, SceneError
-from lammps_inputs.system import System
+from lammps_inputs.system import Continuation, System
 
 
 def check_engine(scene: Scene, engine: str) -> None:
-    """Refuse what the engine of that name cannot do.
+    """Refuse what the engine of that name cannot do, or this machine's memory cannot hold.
 
     Raises:
         SceneError: naming the field or part, its value and what the engine allows.
     """
-    problems = list(engine_named(engine).problems(scene.system))
+    problems = [*memory_problems(scene.system), *engine_named(engine).problems(scene.system)]
     if problems:
         raise SceneError(problems)
 
@@ -36,9 +37,15 @@ def write_deck(scene: Scene, directory: Path, engine: str) -> None:
     """Write the input script and what it reads into a folder.
 
     Raises:
-        SceneError: when the engine cannot run the scene, or writes no decks.
+        SceneError: when the engine cannot run the scene, or writes no decks, or the run that it
+            starts from is not there.
     """
     check_engine(scene, engine)
+    placement = scene.system.placement
+    if isinstance(placement, Continuation):
+        problems = list(placement.problems(scene.system.box, scene.system.species))
+        if problems:
+            raise SceneError([f"start of {scene.name}: {problem}" for problem in problems])
     (directory / "in.lammps").write_text(script(scene, engine), encoding="utf-8")
     state = initial_state(scene.system, scene.seed)
     lammps_engine_named(engine).write(scene.system, state, scene.name, directory)
@@ -71,6 +78,7 @@ def _lines(scene: Scene, engine: LammpsEngine, start: Start) -> Iterator[str]:
     yield ""
     yield from engine.interactions(system)
     yield f"timestep {system.clock.time_step!r}"
+    yield from engine.preparation(system, start)
     yield from engine.motion(system)
     yield ""
     if system.solvent:
@@ -93,7 +101,8 @@ def _title(scene: Scene) -> Iterator[str]:
     yield f"# {scene.name}: {about}"
     yield "# run:     lmp -in in.lammps      or   mpirun -np 2 lmp -in in.lammps"
     yield f"# change:  lmp -in in.lammps -var {change}"
-    yield "# units:   collision cell a0 = kBT = fluid particle mass m_f = 1"
+    fluid = "collision cell a0 = kBT = fluid particle mass m_f = 1"
+    yield f"# units:   {fluid if scene.system.solvent else 'a0 = kBT = m_f = 1'}"
     yield ""
 
 

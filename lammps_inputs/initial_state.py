@@ -5,7 +5,7 @@ from dataclasses import dataclass, field
 import numpy as np
 from numpy.typing import NDArray
 
-from lammps_inputs.system import Box, System
+from lammps_inputs.system import Box, Continuation, System
 
 Array = NDArray[np.float64]
 
@@ -42,6 +42,8 @@ def initial_state(system: System, seed: int) -> InitialState:
     if system.placement:
         colloid_positions = system.placement.positions(system.box, system.species, seed)
     colloid_velocities = random.normal(size=(system.particles, dimensions)) / np.sqrt(masses)
+    if isinstance(system.placement, Continuation):
+        colloid_velocities = system.placement.velocities(system.box, system.species)
 
     fluid = system.solvent
     room = np.zeros_like(system.radii) if fluid and fluid.coupling == "cell" else system.radii

@@ -4,15 +4,42 @@ What cannot run at all is refused by the scene or the engine (`problems`).
 """
 
 import math
+import os
 from collections.abc import Iterator
 
-from lammps_inputs.system import Box, Solvent
+from lammps_inputs.system import Box, Solvent, System
 from lammps_inputs.viscosity import solvent_viscosity
+
+BYTES_PER_PARTICLE = 176.0  # to draw and write an initial state, measured at 2e6 particles
+FASTEST = 1e9  # particle updates a second of one process, beyond what any engine does
+YEAR = 365 * 86400.0  # seconds
 
 SOUND = 1.0  # speed in an ideal gas that a thermostat keeps at kBT = m_f = 1 [a0/t0]
 DENSITY = 1.0  # below, most particles are alone in their cell
 KNUDSEN = 0.05  # mean free path over width, above which the fluid is no continuum
 TAIL = 0.15  # excess over kinetic theory's viscosity
+
+
+def memory_problems(system: System) -> Iterator[str]:
+    """A line where this machine's memory cannot hold the initial state."""
+    particles = system.particles + (system.solvent.particles if system.solvent else 0)
+    needed = BYTES_PER_PARTICLE * particles
+    available = os.sysconf("SC_PHYS_PAGES") * os.sysconf("SC_PAGE_SIZE")
+    if needed > available:
+        yield (
+            f"{particles:.3g} particles: their initial state needs {needed:.3g} bytes of memory; "
+            f"this machine has {available:.3g}"
+        )
+
+
+def time_problems(work: float, processes: int) -> Iterator[str]:
+    """A line where so many particle updates would take the fastest engine more than a year."""
+    years = work / (FASTEST * processes) / YEAR
+    if years > 1:
+        yield (
+            f"{work:.3g} particle updates: would take {years:.3g} years on {processes} "
+            f"{'process' if processes == 1 else 'processes'} at {FASTEST:g} a second"
+        )
 
 
 def solvent_warnings(solvent: Solvent, box: Box) -> Iterator[str]:

@@ -5,6 +5,7 @@ mass m_f are 1, so times are in t0 = a0 sqrt(m_f / kBT) and velocities in a0 / t
 (tabatabaei-2009, 3.2.3 and 3.4.1).
 """
 
+import reprlib
 import tomllib
 from abc import ABC, abstractmethod
 from collections.abc import Iterable, Iterator
@@ -22,6 +23,27 @@ Positive = Annotated[float, Field(gt=0)]
 NonNegative = Annotated[float, Field(ge=0)]
 
 
+LARGEST_FILE = 2**20  # bytes of a scene file
+SMALLEST, LARGEST = 1e-9, 1e9  # of any number but 0: all that is computed from it stays a float
+
+
+def shown(value: object) -> str:
+    """A value as an error shows it: short, and whatever it is."""
+    try:
+        return reprlib.repr(value) if not isinstance(value, float | str) else _SHORT.repr(value)
+    except (ValueError, RecursionError):  # an integer of more digits than Python prints
+        return f"a {type(value).__name__}"
+
+
+def shown_name(name: str) -> str:
+    """A name as an error shows it."""
+    return name if name.isprintable() and len(name) <= 100 else shown(name)
+
+
+_SHORT = reprlib.Repr()
+_SHORT.maxstring = _SHORT.maxother = 100
+
+
 class SceneError(ValueError):
     """A scene that cannot be simulated: one line per offending field in `problems`."""
 
@@ -35,7 +57,7 @@ class SceneError(ValueError):
     @classmethod
     def of_field(cls, field: str, value: object, allowed: str) -> Self:
         """The error for one field: its name, the value given and what is allowed."""
-        return cls([f"{field} = {value!r}: {allowed}"])
+        return cls([f"{shown_name(field)} = {shown(value)}: {allowed}"])
 
 
 class Scene(BaseModel, ABC):
@@ -55,6 +77,7 @@ class Scene(BaseModel, ABC):
     model_config = ConfigDict(frozen=True, extra="forbid", allow_inf_nan=False, strict=False)
 
     name: ClassVar[str]
+    si_fields: ClassVar[tuple[str, ...]] = ()  # which have bounds of their own
 
     duration: Positive = Field(description="simulated time after the equilibration [t0]")
     equilibration: NonNegative = Field(
@@ -68,7 +91,7 @@ class Scene(BaseModel, ABC):
     )
 
     @classmethod
-    def make(cls, **fields: Any) -> Self:
+    def make(cls, /, **fields: Any) -> Self:
         """A scene from field values.
 
         Raises:
@@ -78,7 +101,7 @@ class Scene(BaseModel, ABC):
             scene = cls(**fields)
         except ValidationError as error:
             raise SceneError(cls._field_problems(error)) from None
-        problems = list(scene.problems())
+        problems = list(scene._sizes()) or list(scene.problems())
         if problems:
             raise SceneError(problems)
         return scene
@@ -91,6 +114,15 @@ class Scene(BaseModel, ABC):
             SceneError: for wrong fields, or a scene that stands for none.
         """
         raise SceneError([f"scene {cls.name}: stands for nothing in the laboratory"])
+
+    def _sizes(self) -> Iterator[str]:
+        """A line for each number that is beyond what any scene could mean."""
+        for field, value in self:
+            if isinstance(value, int | float) and value and field not in self.si_fields:
+                if abs(value) > LARGEST:
+                    yield f"{field} = {shown(value)}: must be at most {LARGEST:g} in size"
+                elif abs(value) < SMALLEST:
+                    yield f"{field} = {shown(value)}: must be 0, or at least {SMALLEST:g} in size"
 
     @cached_property
     def system(self) -> System:
@@ -117,13 +149,14 @@ class Scene(BaseModel, ABC):
     @classmethod
     def _field_problems(cls, error: ValidationError) -> Iterable[str]:
         for item in error.errors():
-            field = ".".join(str(part) for part in item["loc"]) or "scene"
+            field = shown_name(".".join(str(part) for part in item["loc"]) or "scene")
+            given = f"{field} = {shown(item['input'])}"
             if item["type"] == "extra_forbidden":
                 known = ", ".join(cls.model_fields)
-                yield f"{field} = {item['input']!r}: unknown field; {cls.name} has {known}"
+                yield f"{given}: unknown field; {cls.name} has {known}"
             else:
                 reason = item["msg"].removeprefix("Value error, ").removeprefix("Input ")
-                yield f"{field} = {item['input']!r}: {reason}"
+                yield f"{given}: {reason}"
 
     def toml(self) -> str:
         """The scene as the text of a scene file."""
@@ -148,7 +181,7 @@ def parse_assignment(text: str) -> tuple[str, Any]:
         raise SceneError([f"{text!r}: must be a single line; give every field its own --set"])
     try:
         return field.strip(), tomllib.loads(f"value = {value}")["value"]
-    except tomllib.TOMLDecodeError:
+    except (ValueError, RecursionError):
         return field.strip(), value.strip()
 
 
@@ -159,6 +192,10 @@ def read_scene(file: Path) -> dict[str, Any]:
         SceneError: when the file is missing or not TOML.
     """
     try:
+        if file.stat().st_size > LARGEST_FILE:
+            raise SceneError([f"{file}: more than {LARGEST_FILE} bytes"])
         return tomllib.loads(file.read_text(encoding="utf-8"))
+    except SceneError:
+        raise
     except (OSError, ValueError, RecursionError) as error:
         raise SceneError([f"{file}: {' '.join(str(error).split())}"]) from None

@@ -7,7 +7,7 @@ t0. A scene builds its `System` from them; an engine refuses the parts that it d
 import math
 from collections.abc import Iterator
 from dataclasses import dataclass
-from typing import Any, Literal, Protocol, Self
+from typing import Any, Literal, Protocol, Self, runtime_checkable
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -85,10 +85,8 @@ class Clock:
         """
         beats = max(2, round(sampling_interval / beat))
         outputs = max(1, math.ceil((equilibration + duration) / beat / beats - 1e-9))
-        look = next(
-            beats // looks
-            for looks in range(2, beats + 1)
-            if beats % looks == 0 and beats // looks <= LONGEST_LOOK
+        look = max(
+            look for look in range(1, LONGEST_LOOK + 1) if beats % look == 0 and beats // look >= 2
         )
         return cls(
             time_step=beat / steps_per_beat,
@@ -148,8 +146,13 @@ class PairPotential(Protocol):
     def pair_style(self) -> str:
         """Name of the LAMMPS style, without its arguments."""
 
-    def pair_arguments(self, seed: str) -> str:
-        """What follows the cutoff on the `pair_style` line; `seed` is a variable of the deck."""
+    def pair_arguments(self, cutoff: float, seed: str) -> str:
+        """What follows the style on the `pair_style` line, with a space before each argument.
+
+        Args:
+            cutoff: the largest of the species' interactions [a0].
+            seed: a variable of the deck, for a style that draws random numbers.
+        """
 
     @property
     def pair_modify(self) -> str:
@@ -253,7 +256,109 @@ class VelocityVerlet:
     """Newton's equations of motion, by velocity Verlet."""
 
 
-Motion = VelocityVerlet
+@dataclass(frozen=True)
+class Events:
+    """Free flight from one elastic collision to the next, at exact times.
+
+    Species collide where their radii say that surfaces touch, with each other and with walls.
+    """
+
+
+@dataclass(frozen=True)
+class Reactions:
+    """Colours A and B that no particle feels: A turns to B at one surface, B to A at another.
+
+    The surfaces are the lower and the upper wall of an axis; or, about central particles, contact
+    with one of them and the sphere of radius `cutoff`, entered from outside.
+
+    Attributes:
+        probabilities: of a reaction at each visit, (0, 1]; each has colours of its own.
+        axis: of the walls; None where central particles have the surfaces.
+        centers: the first so many particles are central.
+        cutoff: radius of the outer surface [a0].
+    """
+
+    probabilities: tuple[float, ...]
+    axis: int | None = None
+    centers: int = 0
+    cutoff: float = 0.0
+
+
+@dataclass(frozen=True)
+class Isokinetic:
+    """Gauss's thermostat: the kinetic energy is constant (delhommelle-2005, 1 to 3).
+
+    Attributes:
+        temperature: [kBT].
+        directions: of which the kinetic energy is.
+        shear_rate: dv_x/dy of a SLLOD flow, the kinetic energy then relative to it [1/t0].
+    """
+
+    temperature: float
+    directions: Literal["xyz", "x", "y", "z"] = "xyz"
+    shear_rate: float = 0.0
+
+
+@dataclass(frozen=True)
+class Configurational:
+    """The temperature of the configurations is held, velocities are free (delhommelle-2005, 4, 5).
+
+    Attributes:
+        temperature: [kBT].
+        damping: Q of (5).
+        shear_rate: dv_x/dy of a SLLOD flow [1/t0].
+    """
+
+    temperature: float
+    damping: float = 10.0
+    shear_rate: float = 0.0
+
+
+@dataclass(frozen=True)
+class Langevin:
+    """Friction -m friction v against the laboratory, and its noise.
+
+    Attributes:
+        temperature: [kBT].
+        friction: [1/t0].
+    """
+
+    temperature: float
+    friction: float
+
+
+@dataclass(frozen=True)
+class DissipativePairs:
+    """The thermostat of dissipative particle dynamics: friction and noise of pairs.
+
+    The friction of a pair is friction (1 - r/cutoff)^2 times its approach; momentum is conserved.
+
+    Attributes:
+        temperature: [kBT].
+        friction: [m_f/t0].
+        cutoff: [a0].
+    """
+
+    temperature: float
+    friction: float
+    cutoff: float
+
+
+Thermostatted = Isokinetic | Configurational | Langevin | DissipativePairs
+Motion = VelocityVerlet | Thermostatted | Events
+
+
+@dataclass(frozen=True)
+class Rest:
+    """A time at rest before step 0, without drives and outputs, the kinetic energy constant.
+
+    Attributes:
+        steps: of the clock's time step.
+        temperature: [kBT].
+    """
+
+    steps: int
+    temperature: float
 
 
 @dataclass(frozen=True)
@@ -293,6 +398,17 @@ class Placement(Protocol):
         """Centres of all species, one after the other, (N, d) [a0]."""
 
 
+@runtime_checkable
+class Continuation(Placement, Protocol):
+    """A placement with velocities, as another run left the particles."""
+
+    def velocities(self, box: Box, species: tuple[Species, ...]) -> Array:
+        """Velocities of all species, one after the other, (N, d) [a0/t0]."""
+
+    def problems(self, box: Box, species: tuple[Species, ...]) -> Iterator[str]:
+        """Why that run cannot be gone on from, in one line."""
+
+
 Kind = Literal["trajectory", "table", "profile"]
 
 
@@ -302,7 +418,7 @@ class Output:
 
     Attributes:
         file: its name.
-        kind: trajectory of particles; table of averages; profile across the y axis.
+        kind: trajectory of particles; table of averages; profile, averages by bins.
         columns: beside the step. Those of a table are quantities that the engine averages.
     """
 
@@ -343,9 +459,11 @@ class System:
     Attributes:
         species: particles, none for a pure fluid; atom types of LAMMPS from 1 on, in this order.
         placement: of the species at the start; None without any.
+        rest: before the run; None: it begins as the species are placed.
         solvent: None: the species move in vacuum.
         outputs: what the run writes.
         measures: what `narrows analyze` makes of it, names of `analysis/measures`.
+        reactions: of colours, if any.
     """
 
     box: Box
@@ -358,12 +476,19 @@ class System:
     walls: tuple[Wall, ...] = ()
     drives: tuple[Drive, ...] = ()
     motion: Motion = VelocityVerlet()
+    rest: Rest | None = None
     solvent: Solvent | None = None
+    reactions: Reactions | None = None
 
     @property
     def particles(self) -> int:
         """Number of particles of all species."""
         return sum(species.count for species in self.species)
+
+    @property
+    def shear_rate(self) -> float:
+        """dv_x/dy that the motion imposes on a sheared periodic box [1/t0]."""
+        return float(getattr(self.motion, "shear_rate", 0.0))
 
     @property
     def masses(self) -> Array:

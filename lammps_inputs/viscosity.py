@@ -82,7 +82,8 @@ def viscosity_2d(density: float, collision_time: float, alpha: float) -> Viscosi
     """
     p = _colliding(density)
     decay = p * (1 - math.cos(2 * alpha))
-    kinetic = math.inf if alpha >= math.pi else collision_time * (1 / decay - 0.5)
+    endless = alpha >= math.pi or decay <= 0
+    kinetic = math.inf if endless else collision_time * (1 / decay - 0.5)
     return Viscosity(kinetic, p * (1 - math.cos(alpha)) / (12 * collision_time))
 
 
@@ -103,7 +104,8 @@ def viscosity_random_axis(density: float, collision_time: float, alpha: float) -
     Gompper, Ihle, Kroll and Winkler, Adv. Polym. Sci. 221, 1 (2009), table 1.
     """
     p = _colliding(density)
-    kinetic = 5 / (p * (2 - math.cos(alpha) - math.cos(2 * alpha))) - 1
+    decay = p * (2 - math.cos(alpha) - math.cos(2 * alpha))
+    kinetic = 5 / decay - 1 if decay > 0 else math.inf
     return Viscosity(
         collision_time / 2 * kinetic, p * (1 - math.cos(alpha)) / (18 * collision_time)
     )
@@ -121,4 +123,6 @@ def self_diffusion_2d(density: float, collision_time: float, angle: float) -> fl
 
 def _colliding(density: float) -> float:
     """(M - 1 + e^-M) / M, the mean of 1 - 1/n over the particles of Poisson cells."""
+    if density < 1e-4:  # where the difference has no digits left
+        return density / 2 - density**2 / 6
     return 1 + math.expm1(-density) / density

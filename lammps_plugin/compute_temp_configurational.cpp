@@ -24,7 +24,7 @@ ComputeTempConfigurational::~ComputeTempConfigurational()
 
 void ComputeTempConfigurational::init()
 {
-  pair_ = &ConfigurationalTemperature::pair_of(*force, *error, style);
+  pair_ = &ConfigurationalTemperature::pair_of(*force, *error, style, true);
 }
 
 void ComputeTempConfigurational::compute_vector()

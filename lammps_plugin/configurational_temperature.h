@@ -23,9 +23,12 @@ class ConfigurationalTemperature {
   std::vector<Triple> gradient;    // of the temperature
   double force_squares = 0, laplacian = 0;
 
-  static PairSmooth &pair_of(Force &force, Error &error, const char *user)
+  // With `within`, also a pair style that pair_style hybrid/overlay has once.
+  static PairSmooth &pair_of(Force &force, Error &error, const char *user, bool within = false)
   {
     auto *pair = dynamic_cast<PairSmooth *>(force.pair);
+    for (const char *name : {"soft/disk", "wca"})
+      if (!pair && within) pair = dynamic_cast<PairSmooth *>(force.pair_match(name, 1));
     if (!pair)
       error.all(FLERR, "{}: pair_style {}: must be soft/disk or wca, which give their derivatives",
                 user, force.pair_style ? force.pair_style : "none");

@@ -1,6 +1,7 @@
 #include "fix_mpc.h"
 
 #include "core/cell_coupling.h"
+#include "core/fluid_file.h"
 
 #include "atom.h"
 #include "comm.h"
@@ -161,15 +162,18 @@ template <int D> void FixMPC<D>::write_restart(FILE *file)
 
 template <int D> void FixMPC<D>::restart(char *buffer)
 {
-  make_solver(MpcState<D>::particles_in(buffer));
-  check_processes();
-  auto &pulls = colloids_.pulls;
-  pulls = state_->restart(buffer);
-  if (couples_every_step())    // images of a colloid are of one process, atoms may change theirs
-    pulls.erase(std::remove_if(pulls.begin(), pulls.end(),
-                               [&](const auto &pull) { return pull.process != comm->me; }),
-                pulls.end());
-  restored_ = true;
+  guarded([&] {
+    const auto header = mpc::read_restart_header<D>(buffer, given_.seed);
+    make_solver(static_cast<double>(header.fluid.particles));
+    check_processes();
+    auto &pulls = colloids_.pulls;
+    pulls = state_->restart(buffer);
+    if (couples_every_step())    // images of a colloid are of one process, atoms may change theirs
+      pulls.erase(std::remove_if(pulls.begin(), pulls.end(),
+                                 [&](const auto &pull) { return pull.process != comm->me; }),
+                  pulls.end());
+    restored_ = true;
+  });
 }
 
 template <int D> void FixMPC<D>::add_forces()

@@ -1,5 +1,7 @@
 #include "mpc_state.h"
 
+#include "core/fluid_file.h"
+
 #include "comm.h"
 #include "domain.h"
 #include "error.h"
@@ -17,13 +19,6 @@ using mpc::Vector;
 namespace {
 
 constexpr std::uint64_t MOST_TRIALS = 100000;    // to place a particle outside the colloids
-constexpr char MAGIC[8] = {'m', 'p', 'c', 'f', 'l', 'u', 'i', 'd'};
-
-// What follows it in a restart, before the pulls on the colloids and the particles.
-struct RestartHeader {
-  mpc::FluidHeader fluid;
-  std::int64_t processes, pulls;
-};
 
 // A file of a fluid, its header read.
 template <int D>
@@ -31,10 +26,15 @@ FILE *open_fluid(Error &error, const std::string &name, mpc::FluidHeader &header
 {
   FILE *file = std::fopen(name.c_str(), "rb");
   if (!file) error.one(FLERR, "fix mpc: load: cannot read {}", name);
-  if (std::fread(&header, sizeof header, 1, file) != 1 ||
-      std::memcmp(header.magic, MAGIC, sizeof MAGIC) || header.dimension != D ||
-      header.particles < 1)
+  if (std::fread(&header, sizeof header, 1, file) != 1)
     error.one(FLERR, "fix mpc: load: {} is not a fluid in {} dimensions", name, D);
+  std::fseek(file, 0, SEEK_END);
+  try {
+    mpc::check_fluid_header<D>(header, static_cast<std::uint64_t>(std::ftell(file)));
+  } catch (const mpc::Fault &fault) {
+    error.one(FLERR, "fix mpc: load: {}: {}", name, fault.what());
+  }
+  std::fseek(file, sizeof header, SEEK_SET);
   return file;
 }
 
@@ -114,13 +114,6 @@ template <int D> double MpcState<D>::particles_in(Error &error, const std::strin
   return static_cast<double>(header.particles);
 }
 
-template <int D> double MpcState<D>::particles_in(const char *restart)
-{
-  RestartHeader header;
-  std::memcpy(&header, restart, sizeof header);
-  return static_cast<double>(header.fluid.particles);
-}
-
 template <int D> void MpcState<D>::load(const std::string &name)
 {
   mpc::FluidHeader header;
@@ -144,19 +137,17 @@ template <int D>
 void MpcState<D>::check(const Particle<D> &particle, std::vector<bool> &known,
                         const std::string &name) const
 {
-  const double number = particle.id;
-  if (!(number >= 0 && number < known.size() && number == std::floor(number)))
-    error->one(FLERR, "fix mpc: load: {} has a particle {}: numbers are whole, from 0 to {}", name,
-               number, known.size() - 1);
-  const auto place = static_cast<std::size_t>(number);
-  if (known[place]) error->one(FLERR, "fix mpc: load: {} has two particles {}", name, number);
-  known[place] = true;
+  try {
+    mpc::check_number(particle, known);
+  } catch (const mpc::Fault &fault) {
+    error->one(FLERR, "fix mpc: load: {} has {}", name, fault.what());
+  }
   for (int a = 0; a < D; ++a) {
     const double x = particle.x[a];
     if (!std::isfinite(x) ||
         (!domain->periodicity[a] && (x < domain->boxlo[a] || x > domain->boxhi[a])))
       error->one(FLERR, "fix mpc: load: particle {} of {} has {} = {}: not a number, or beyond a wall",
-                 number, name, "xyz"[a], x);
+                 particle.id, name, "xyz"[a], x);
   }
 }
 
@@ -191,7 +182,7 @@ template <int D> mpc::FluidHeader MpcState<D>::fluid_header() const
 {
   mpc::FluidHeader header{{}, D, static_cast<std::int64_t>(solver_.particles()),
                           static_cast<std::int64_t>(solver_.collisions())};
-  std::memcpy(header.magic, MAGIC, sizeof MAGIC);
+  std::memcpy(header.magic, mpc::FLUID_FILE, sizeof mpc::FLUID_FILE);
   return header;
 }
 
@@ -219,45 +210,42 @@ template <int D> void MpcState<D>::save(const std::string &name)
 // forces decide the last bits, so that a continued run repeats an uninterrupted one.
 template <int D> void MpcState<D>::write_restart(FILE *file, const std::vector<Pull<D>> &pulls)
 {
-  const double bytes = sizeof(RestartHeader) + pulls.size() * sizeof(Pull<D>) +
-      solver_.particles() * sizeof(Particle<D>);
+  mpc::Checksum sum;
+  const double bytes = sizeof(mpc::RestartHeader) + pulls.size() * sizeof(Pull<D>) +
+      solver_.particles() * sizeof(Particle<D>) + sizeof sum.value();
   if (bytes > INT_MAX)
     error->all(FLERR, "fix mpc: restart: {} particles are too many for a LAMMPS restart file; "
                "use fix_modify save and load", solver_.particles());
   if (comm->me == 0) {
-    const RestartHeader header{fluid_header(), comm->nprocs,
-                               static_cast<std::int64_t>(pulls.size())};
+    const auto header = mpc::restart_header(
+        D, static_cast<std::int64_t>(solver_.particles()),
+        static_cast<std::int64_t>(solver_.collisions()), comm->nprocs,
+        static_cast<std::int64_t>(pulls.size()), given_.seed);
     const int size = static_cast<int>(bytes);
     std::fwrite(&size, sizeof size, 1, file);
     std::fwrite(&header, sizeof header, 1, file);
     std::fwrite(pulls.data(), sizeof(Pull<D>), pulls.size(), file);
+    sum.add(pulls.data(), pulls.size() * sizeof(Pull<D>));
   }
   gather([&](const std::vector<Particle<D>> &particles) {
     std::fwrite(particles.data(), sizeof particles[0], particles.size(), file);
+    sum.add(particles.data(), particles.size() * sizeof particles[0]);
   });
+  const auto checksum = sum.value();
+  if (comm->me == 0) std::fwrite(&checksum, sizeof checksum, 1, file);
 }
 
 template <int D> std::vector<Pull<D>> MpcState<D>::restart(const char *buffer)
 {
-  const auto read = [&](auto &record) {
-    std::memcpy(&record, buffer, sizeof record);
-    buffer += sizeof record;
-  };
-  RestartHeader header;
-  read(header);
-  if (header.fluid.dimension != D) error->all(FLERR, "fix mpc: restart: of another dimension");
-  std::vector<Pull<D>> pulls;
-  for (std::int64_t n = 0; n < header.pulls; ++n) {
-    Pull<D> pull;
-    read(pull);
-    if (header.processes == comm->nprocs) pulls.push_back(pull);
-  }
+  const auto header = mpc::read_restart_header<D>(buffer, given_.seed);
   solver_.reset(header.fluid.collisions, lower(), upper());
-  for (std::int64_t n = 0; n < header.fluid.particles; ++n) {
-    Particle<D> particle;
-    read(particle);
-    solver_.add(particle);
-  }
+  std::vector<Pull<D>> pulls;
+  mpc::read_restart<D, Pull<D>>(
+      buffer, given_.seed,
+      [&](const Pull<D> &pull) {
+        if (header.processes == comm->nprocs) pulls.push_back(pull);
+      },
+      [&](const Particle<D> &particle) { solver_.add(particle); });
   solver_.count();
   return pulls;
 }

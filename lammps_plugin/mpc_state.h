@@ -23,9 +23,8 @@ template <int D> class MpcState : protected Pointers {
   std::array<int, D> lower() const;
   std::array<int, D> upper() const;
 
-  // How many particles a file has, or a restart.
+  // How many particles a file has.
   static double particles_in(class Error &, const std::string &file);
-  static double particles_in(const char *restart);
 
   void create(const std::vector<mpc::Colloid<D>> &, const mpc::Coupling<D> *);
   void load(const std::string &file);

@@ -8,6 +8,7 @@ applied to a vector without being stored at all.
 
 from __future__ import annotations
 
+import math
 import os
 from collections.abc import Iterable, Iterator
 from typing import Any
@@ -28,8 +29,11 @@ _RESTART = 40
 _CYCLES = 300
 
 
+YEAR = 365 * 86400.0  # seconds
+
+
 class TooLarge(ValueError):
-    """A chain whose vectors or matrix do not fit the memory; the message has the bytes."""
+    """What does not fit the memory, or would take a year; the message has the bytes or the time."""
 
 
 class NoUniqueState(ValueError):
@@ -49,6 +53,11 @@ def _terms(model: LatticeGas, sites: int) -> Iterator[tuple[int, Vector]]:
         yield bond, model.bulk
 
 
+def count_states(model: LatticeGas, sites: int) -> float:
+    """s^L, infinite where no float holds it."""
+    return math.inf if sites * math.log(model.size) > 700 else float(model.size) ** sites
+
+
 def available_bytes() -> int:
     """Physical memory free for use, in bytes."""
     return os.sysconf("SC_AVPHYS_PAGES") * os.sysconf("SC_PAGE_SIZE")
@@ -59,6 +68,22 @@ def require_memory(needed: float, what: str) -> None:
     available = available_bytes()
     if needed > available:
         raise TooLarge(f"{what} needs {needed:.3g} bytes of memory, {available:.3g} are available")
+
+
+def require_vectors(count: int, model: LatticeGas, sites: int) -> None:
+    """Raise `TooLarge` if so many vectors of all configurations do not fit the memory."""
+    states = count_states(model, sites)
+    if math.isinf(states):
+        digits = math.log10(8 * count) + sites * math.log10(model.size)
+        raise TooLarge(f"vectors of L = {sites} sites need 1e{digits:.0f} bytes of memory")
+    require_memory(8.0 * count * states, f"vectors of L = {sites} sites")
+
+
+def require_time(operations: float, per_second: float, what: str) -> None:
+    """Raise `TooLarge`, with the time it would take, if that is more than a year."""
+    years = operations / per_second / YEAR
+    if not years <= 1:
+        raise TooLarge(f"{what} would take {years:.3g} years")
 
 
 def _check_sites(sites: int) -> None:
@@ -72,7 +97,7 @@ def matrix_bytes(model: LatticeGas, sites: int) -> float:
     per_state = 1.0 + (sites - 1) * np.count_nonzero(model.bulk) / s**2
     if model.left is not None and model.right is not None:
         per_state += (np.count_nonzero(model.left) + np.count_nonzero(model.right)) / s
-    return 3 * 12 * per_state * float(s) ** sites
+    return 3 * 12 * per_state * count_states(model, sites)
 
 
 def generator(model: LatticeGas, sites: int) -> sparse.csr_array:
@@ -139,7 +164,7 @@ def apply(model: LatticeGas, sites: int, vector: Vector) -> Vector:
 def operator(model: LatticeGas, sites: int) -> LinearOperator[np.float64]:
     """Matrix-free generator for L beyond what a stored matrix allows; raises `TooLarge`."""
     _check_sites(sites)
-    require_memory(4.0 * 8 * float(model.size) ** sites, f"vectors of L = {sites} sites")
+    require_vectors(4, model, sites)
     shape = (model.size**sites,) * 2
     return LinearOperator(shape, matvec=lambda v: apply(model, sites, v.ravel()), dtype=np.float64)
 
@@ -174,6 +199,9 @@ def evolve(model: LatticeGas, sites: int, initial: Vector, times: Iterable[float
         raise ValueError(f"times {moments}: must be increasing and not negative")
     require_memory((4.0 + len(moments)) * 8 * initial.size, f"evolution of L = {sites} sites")
     bound = exit_rate(model, sites)
+    terms = bound * max(moments, default=0.0)
+    require_memory(8 * 2 * terms, f"evolution to time {max(moments, default=0.0):g}")
+    require_time(terms * initial.size, 1e8, f"evolution to time {max(moments, default=0.0):g}")
     result = np.empty((len(moments), initial.size))
     state, now = initial, 0.0
     for row, time in enumerate(moments):

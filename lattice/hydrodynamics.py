@@ -15,6 +15,7 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.optimize import brentq
 
+from lattice.generator import require_time
 from lattice.models import LatticeGas, RateError, Vector
 from lattice.shocks import ShockWalk
 
@@ -78,19 +79,6 @@ class CurrentRelation:
         jump = self.flux(np.array([left, right]))
         return float((jump[1] - jump[0]) / (right - left))
 
-    def burgers(self, around: float) -> CurrentRelation:
-        """Burgers limit: j to second order about `around`; v = j'(u) then obeys v_t + v v_x = 0."""
-        point = np.array(around)
-        h = 1e-4 * (self.high - self.low)
-        j, slope = float(self.flux(point)), float(self.speed(point))
-        bend = float(self.speed(point + h) - self.speed(point - h)) / (2 * h)
-        return CurrentRelation(
-            lambda u: j + slope * (u - around) + bend * (u - around) ** 2 / 2,
-            lambda u: slope + bend * (u - around),
-            self.low,
-            self.high,
-        )
-
 
 def current_relation(model: LatticeGas) -> CurrentRelation:
     """j(u) of a model whose product measures are stationary.
@@ -141,6 +129,8 @@ def solve(
     fastest = float(np.abs(relation.speed(np.linspace(relation.low, relation.high, _GRID))).max())
     width = 1 / u.size
     result = np.empty((len(times), u.size))
+    last = float(max(times, default=0.0))
+    require_time(last * fastest * u.size**2, 1e7, f"{u.size} cells to time {last:g}")
     now = 0.0
     for row, time in enumerate(times):
         steps = int(np.ceil((time - now) * fastest / (0.9 * width)))

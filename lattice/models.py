@@ -220,15 +220,6 @@ class LatticeGas:
         """Rate of the pair transition `initial` -> `final`, numbered from 1 as in (2.1)."""
         return float(self.bulk[final - 1, initial - 1])
 
-    def boundary_rates(self, side: Literal["left", "right"]) -> tuple[float, ...]:
-        """(alpha1, alpha2, alpha3, gamma1, gamma2, gamma3), or delta and beta on the right."""
-        matrix = self.left if side == "left" else self.right
-        if matrix is None:
-            raise RateError("a periodic chain has no boundary rates")
-        moves = [move for move in TRANSITIONS.values() if max(move) < self.size]
-        forward = [float(matrix[final, initial]) for final, initial in moves]
-        return (*forward, *(float(matrix[initial, final]) for final, initial in moves))
-
     def marginal(self, z: float) -> Vector:
         """Single-site probabilities, shape (s,), of the product measure of fugacity z >= 0."""
         if not (math.isfinite(z) and z >= 0):
@@ -269,12 +260,6 @@ class LatticeGas:
         left = np.einsum("abcd,c->bd", blocks, self.marginal(z1))
         right = np.einsum("abcd,d->ac", blocks, self.marginal(z2))
         return replace(self, left=left, right=right)
-
-    def reflected(self) -> LatticeGas:
-        """The same process seen in a mirror: left and right exchanged."""
-        order = np.arange(self.size**2).reshape(self.size, self.size).T.ravel()
-        bulk = self.bulk[np.ix_(order, order)]
-        return replace(self, bulk=bulk, left=self.right, right=self.left)
 
 
 def _check_boundaries(left: object, right: object) -> None:

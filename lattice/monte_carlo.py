@@ -23,7 +23,7 @@ import numpy as np
 from numba import njit
 from numpy.typing import NDArray
 
-from lattice.generator import require_memory
+from lattice.generator import require_memory, require_time
 from lattice.models import LatticeGas, RateError, Vector
 
 _SLOTS = 16  # columns of an alias table, a power of two not below the 9 pair states
@@ -241,6 +241,8 @@ def simulate(
         f"{replicas} replicas of {sites} sites at {samples} times",
     )
     tables = _tables(model)
+    updates = tables.clock * (sites + 1) * replicas * float(moments[-1])
+    require_time(updates, 1e8 * (os.cpu_count() or 1), f"{updates:.3g} updates")
     cumulative = np.cumsum(initial, axis=1)
 
     def run(replica: int) -> tuple[NDArray[np.uint8], Vector, Vector, int]:

@@ -326,7 +326,10 @@ class ShockWalk:
 
     def distribution(self, start: int, time: float) -> Vector:
         """Probability of each position at `time` from position `start`, shape (L+1,)."""
-        return np.asarray(expm(self.matrix() * time)[:, start])
+        chances: Vector = np.asarray(expm(self.matrix() * time)[:, start])
+        if not abs(chances.sum() - 1) < CONTRADICTS:
+            raise ValueError(f"time {time:g}: too long against the shock's rates to be exact")
+        return chances
 
     def mean_position(self, start: int, time: float) -> float:
         """Mean shock position at `time` from position `start`, ends included."""
@@ -354,7 +357,7 @@ def stationarity_residual(model: LatticeGas, sites: int, z1: float, z2: float) -
     vanishes exactly if W|P> = 0 (2.22).  Raises `generator.TooLarge`.
     """
     largest = 0.0
-    generator.require_memory(4.0 * 8 * float(model.size) ** sites, f"vectors of L = {sites} sites")
+    generator.require_vectors(4, model, sites)
     ends: tuple[tuple[float, Side], ...] = ((z1, "right"), (z2, "left"))
     for z, far in ends:
         marginal = model.marginal(z)
@@ -376,7 +379,7 @@ def random_walk_residuals(model: LatticeGas, sites: int, z1: float, z2: float) -
     """
     d1, d2 = hopping_rates(model, z1, z2)
     e0, el = end_rates(model, z1, z2)
-    generator.require_memory(6.0 * 8 * float(model.size) ** sites, f"vectors of L = {sites} sites")
+    generator.require_vectors(6, model, sites)
     residuals = np.empty(sites + 1)
     for k in range(sites + 1):
         here = shock_vector(model, sites, k, z1, z2)

@@ -17,17 +17,31 @@ internal-state family.  Rates left out are zero.  Without `left` and `right` the
 from __future__ import annotations
 
 import json
+import math
+import reprlib
 import tomllib
 from pathlib import Path
 from typing import Annotated, Literal
 
-from pydantic import BaseModel, ConfigDict, Field, ValidationError
+from pydantic import AfterValidator, BaseModel, ConfigDict, Field, ValidationError
 
 from lattice.models import LatticeGas, RateError, charge_gas, internal_state_gas
 from lattice.shocks import boundary_fugacity
 
-Rate = Annotated[float, Field(strict=True)]
-Fugacity = Annotated[float, Field(strict=True, ge=0, allow_inf_nan=False)]
+LARGEST = 2**20  # bytes of FILE
+SCALE = 1e12  # of rates and fugacities, or their inverse
+
+
+def _in_scale(value: float) -> float:
+    if math.isfinite(value) and value and not 1 / SCALE <= abs(value) <= SCALE:
+        raise ValueError(f"must be 0, or between {1 / SCALE:g} and {SCALE:g}")
+    return value
+
+
+Rate = Annotated[float, Field(strict=True), AfterValidator(_in_scale)]
+Fugacity = Annotated[
+    float, Field(strict=True, ge=0, allow_inf_nan=False), AfterValidator(_in_scale)
+]
 
 
 class SpecError(ValueError):
@@ -68,25 +82,38 @@ def read(path: Path) -> tuple[LatticeGas, float, float]:
     Raises `SpecError`, whose one-line message starts with the path, on anything wrong with it.
     """
     try:
+        if path.stat().st_size > LARGEST:
+            raise SpecError(f"{path}: more than {LARGEST} bytes")
         text = path.read_text(encoding="utf-8")
         data = json.loads(text) if path.suffix.lower() == ".json" else tomllib.loads(text)
         spec = LatticeFile.model_validate(data)
         model = spec.gas()
         return (model, *spec.fugacities(model))
+    except SpecError:
+        raise
     except ValidationError as error:
         raise SpecError(f"{path}: {_sentences(error)}") from error
     except OSError as error:
         raise SpecError(f"{path}: {error.strerror or error}") from error
-    except (UnicodeDecodeError, json.JSONDecodeError, tomllib.TOMLDecodeError) as error:
-        raise SpecError(f"{path}: not readable as {path.suffix[1:] or 'TOML'}: {error}") from error
     except RateError as error:
         raise SpecError(f"{path}: {error}") from error
+    except RecursionError as error:
+        raise SpecError(f"{path}: nested too deep") from error
+    except (ValueError, ArithmeticError) as error:
+        raise SpecError(f"{path}: not readable as {path.suffix[1:] or 'TOML'}: {error}") from error
 
 
 def _sentences(error: ValidationError) -> str:
     parts = []
     for issue in error.errors():
         where = ".".join(str(step) for step in issue["loc"]) or "file"
-        given = "" if issue["type"] == "missing" else f" (given {issue['input']!r})"
+        given = "" if issue["type"] == "missing" else f" (given {_shown(issue['input'])})"
         parts.append(f"{where}: {issue['msg'].lower()}{given}")
     return "; ".join(parts)
+
+
+def _shown(value: object) -> str:
+    try:
+        return reprlib.repr(value)
+    except ValueError:  # an integer of more digits than Python prints
+        return f"a {type(value).__name__}"

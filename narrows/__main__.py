@@ -1,5 +1,5 @@
 """`python -m narrows` is the `narrows` command."""
 
-from narrows.cli import app
+from narrows.cli import main
 
-app()
+main()

@@ -1,9 +1,13 @@
 """The `narrows` command line: thin, each command calls one function of a library package."""
 
+import os
+import sys
+
 import typer
 
 from narrows.commands.analyze import analyze
 from narrows.commands.deck import deck
+from narrows.commands.diffusivity import diffusivity
 from narrows.commands.lattice import app as lattice_app
 from narrows.commands.reproduce import reproduce
 from narrows.commands.run import run
@@ -17,6 +21,20 @@ app = typer.Typer(
     pretty_exceptions_enable=False,
     help="Particles driven through narrow spaces: scenes, LAMMPS decks, runs and their analysis.",
 )
-for command in (deck, run, sweep, status, analyze, reproduce, units):
+for command in (deck, run, sweep, status, analyze, diffusivity, reproduce, units):
     app.command()(command)
 app.add_typer(lattice_app, name="lattice")
+
+
+def main() -> None:
+    """Run the command; a full disk or memory is one line, not a traceback."""
+    try:
+        try:
+            app()
+        finally:
+            sys.stdout.flush()
+    except OSError as error:  # nothing can be said on stdout, now or when Python ends
+        os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
+        sys.exit(f"narrows: cannot write the output: {error.strerror or error}")
+    except MemoryError:
+        sys.exit("narrows: not enough memory")

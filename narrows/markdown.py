@@ -1,7 +1,9 @@
 """Tables in Markdown pages, written by the command that measured them."""
 
+import math
 import re
 from collections.abc import Iterable, Sequence
+from decimal import Decimal
 from pathlib import Path
 
 from run_files.writing import replace_text
@@ -14,15 +16,15 @@ def table(columns: Sequence[str], rows: Iterable[Sequence[str]]) -> str:
 
 
 def number(value: float | None, error: float | None) -> str:
-    """`0.1420 +- 0.0042`: the value to the second digit of its error."""
+    """`0.1420 +- 0.0042`: the value to the second digit of its error, if it has two."""
     if value is None:
         return "-"
-    if error is None:
+    if not error:
         return f"{value:.4g}"
-    if error == 0:
-        return f"{value:.4f}"
-    digits = max(0, 1 - int(f"{error:e}".split("e")[1]))
-    return f"{value:.{digits}f} +- {error:.{digits}f}"
+    significant = Decimal(repr(error)).normalize().as_tuple().digits[:2]
+    first = math.floor(math.log10(error))
+    decimals = max(0, len(significant) - 1 - first)
+    return f"{value:.{decimals}f} +- {error:.{decimals}f}"
 
 
 def replace_block(page: Path, name: str, text: str) -> None:

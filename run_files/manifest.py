@@ -8,6 +8,7 @@ from pydantic import Field, model_validator
 
 from run_files.manifest_0_1 import from_narrows_0_1
 from run_files.names import FileName
+from run_files.progress import is_begun
 from run_files.reading import Part, RunDirectoryError, checked, read_json, read_toml, refuse
 
 FORMAT = 2  # of the manifest; narrows 0.1 wrote no number
@@ -100,6 +101,13 @@ class Drive(Part):
     balanced: bool = False
 
 
+class Rest(Part):
+    """A time at rest before step 0."""
+
+    steps: Whole
+    temperature: Positive
+
+
 class Solvent(Part):
     """The MPC fluid; viscosity_theory is null where kinetic theory has none [a0^2/t0]."""
 
@@ -114,6 +122,15 @@ class Solvent(Part):
     coupling: Literal["force", "reflection", "cell"] = "force"
     drift_interval: Whole = 0
     viscosity_theory: float | None
+
+
+class Reactions(Part):
+    """Reactions of colours, at the walls of an axis or about the first so many particles."""
+
+    probabilities: tuple[Annotated[float, Field(gt=0, le=1)], ...] = Field(min_length=1)
+    axis: Annotated[int, Field(ge=0, le=2)] | None
+    centers: Whole
+    cutoff: Annotated[float, Field(ge=0)]
 
 
 class Output(Part):
@@ -134,7 +151,9 @@ class System(Part):
     walls: tuple[Wall, ...]
     drives: tuple[Drive, ...]
     motion: dict[str, Any]
+    rest: Rest | None = None
     solvent: Solvent | None
+    reactions: Reactions | None = None
     outputs: tuple[Output, ...]
     measures: tuple[Word, ...]
 
@@ -153,6 +172,9 @@ class System(Part):
         for wall in self.walls:
             if wall.axis >= self.box.dimensions or self.box.periodic[wall.axis]:
                 raise ValueError(f"a wall across axis {wall.axis}, which is periodic or none")
+        reacting = self.reactions.axis if self.reactions else None
+        if reacting is not None and reacting not in [wall.axis for wall in self.walls]:
+            raise ValueError(f"reactions at walls of axis {reacting}: it has none")
         return self
 
 
@@ -204,7 +226,8 @@ def read_manifest(directory: Path) -> Manifest:
     if (directory / SCENE).is_file():
         _require_same_scene(manifest, read_toml(directory / SCENE), path)
     variables = directory / VARIABLES
-    return _with_variables(manifest, variables) if variables.is_file() else manifest
+    by_hand = variables.is_file() and not is_begun(directory)  # narrows itself changes nothing
+    return _with_variables(manifest, variables) if by_hand else manifest
 
 
 def _require_same_scene(manifest: Manifest, scene: dict[str, Any], path: Path) -> None:

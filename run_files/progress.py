@@ -9,7 +9,7 @@ from pydantic import Field, model_validator
 from run_files.checksums import Checksum
 from run_files.names import FileName, is_checkpoint
 from run_files.reading import Part, RunDirectoryError, checked, read_json, read_text
-from run_files.writing import replace_text
+from run_files.writing import replace_json, replace_text
 
 NAME = "progress.json"
 FORMAT: Final = 2  # of progress.json
@@ -82,7 +82,7 @@ def read_progress(directory: Path) -> Progress:
 
 def write_progress(directory: Path, progress: Progress) -> Progress:
     """Record the newest checkpoint, then drop the older ones; safe against a kill at any moment."""
-    replace_text(directory / NAME, progress.model_dump_json(indent=2) + "\n")
+    replace_json(directory / NAME, progress.model_dump(mode="json"))
     for old in directory.glob("checkpoint.*"):
         if old.name != progress.checkpoint:
             old.unlink(missing_ok=True)

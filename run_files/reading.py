@@ -7,6 +7,8 @@ from typing import Any, NoReturn, TypeVar
 
 from pydantic import BaseModel, ConfigDict, ValidationError
 
+from run_files.seal import DIGEST, digest_of
+
 LARGEST = 2**26  # bytes of what describes runs; a sweep of 1e5 runs has 5e7
 
 
@@ -57,6 +59,9 @@ def read_json(path: Path) -> dict[str, Any]:
     content = _parse_json(path)
     if not isinstance(content, dict):
         refuse(path, "not a JSON object")
+    digest = content.pop(DIGEST, None)
+    if digest is not None and digest != digest_of(content):
+        refuse(path, "damaged, or changed by hand: to keep a change, remove the entry digest")
     return content
 
 

@@ -7,7 +7,7 @@ from pydantic import Field, model_validator
 
 from run_files.names import is_run_name
 from run_files.reading import Part, checked, read_json, refuse
-from run_files.writing import replace_text
+from run_files.writing import replace_json
 
 NAME = "sweep.json"
 
@@ -54,4 +54,4 @@ def read_sweep(directory: Path) -> SweepFile:
 
 def write_sweep(directory: Path, sweep: SweepFile) -> None:
     """Write the sweep to its directory."""
-    replace_text(directory / NAME, sweep.model_dump_json(indent=1) + "\n")
+    replace_json(directory / NAME, sweep.model_dump(mode="json"))

@@ -1,7 +1,11 @@
 """Writing a file whole: a reader, or a kill, meets the old content or the new, never half."""
 
+import json
 import os
 from pathlib import Path
+from typing import Any
+
+from run_files.seal import sealed
 
 
 def draft_of(path: Path) -> Path:
@@ -15,6 +19,11 @@ def replace_text(path: Path, text: str) -> None:
     draft.write_text(text, encoding="utf-8", newline="")
     reach_disk(draft)
     os.replace(draft, path)
+
+
+def replace_json(path: Path, content: dict[str, Any]) -> None:
+    """Write a JSON file with the digest of its content."""
+    replace_text(path, json.dumps(sealed(content), indent=1, allow_nan=False) + "\n")
 
 
 def reach_disk(path: Path) -> None:

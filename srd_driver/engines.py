@@ -5,13 +5,17 @@ from pathlib import Path
 from typing import Any
 
 import lammps_plugin
-from lammps_inputs import Scene, engine_named
+from lammps_inputs import Scene, SceneError, engine_named
 from lammps_inputs.deck import check_engine, has_deck
+from lammps_inputs.limits import time_problems
 from run_files.progress import Progress
 from srd_driver.errors import RunError
 from srd_driver.session import Session
 
-SESSIONS = {"reference": "srd_driver.reference_session:ReferenceSession"}
+SESSIONS = {
+    "reference": "srd_driver.reference_session:ReferenceSession",
+    "events": "srd_driver.events_session:EventsSession",
+}
 
 
 def require_engine(scene: Scene, engine: str, processes: int = 1) -> None:
@@ -26,11 +30,14 @@ def require_engine(scene: Scene, engine: str, processes: int = 1) -> None:
             f"the {engine} engine runs on one process; use the default engine with mpirun"
         )
     check_engine(scene, engine)
-    if engine_named(engine).plugin and not lammps_plugin.folder():
+    if problems := list(time_problems(scene.system.work, processes)):
+        raise SceneError(problems)
+    if engine_named(engine).needs_plugin(scene.system) and not lammps_plugin.folder():
+        instead = "; or use --engine srd" if scene.system.solvent else ""
         raise RunError(
             f"engine {engine} needs the LAMMPS plugin, which was not built when narrows was "
             "installed: install a C++17 compiler, then narrows again with "
-            "NARROWS_REQUIRE_PLUGIN=1; or use --engine srd"
+            f"NARROWS_REQUIRE_PLUGIN=1{instead}"
         )
 
 

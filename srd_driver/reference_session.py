@@ -7,6 +7,7 @@ import numpy as np
 from lammps_inputs import Scene
 from lammps_inputs.system import FLUID_AVERAGES, FLUID_PROFILE, TRAJECTORY
 from run_files.progress import Progress
+from srd_driver.dump import write_frame
 from srd_driver.reference import ReferenceEngine
 from srd_driver.session import Array
 
@@ -97,29 +98,14 @@ class ReferenceSession:
         self._write_frame()
 
     def _write_frame(self) -> None:
-        count, dimensions = self._engine.colloid_positions.shape
-        if not count:
-            return
         engine = self._engine
-        columns = np.zeros((count, len(TRAJECTORY.columns)))
-        columns[:, 0] = np.arange(1, count + 1)
-        columns[:, 1] = self._system.atom_types()
-        for first, values in (
-            (2, engine.colloid_positions),
-            (5, engine.colloid_velocities),
-            (8, engine.colloid_images),
-        ):
-            columns[:, first : first + dimensions] = values
-        ends = [(0.0, size) for size in self._box.sizes] + [(-0.5, 0.5)] * (3 - dimensions)
-        periodic = (*self._box.periodic, True)[:3]
-        with (self._directory / TRAJECTORY.file).open("a", encoding="utf-8") as file:
-            file.write(
-                f"ITEM: TIMESTEP\n{self.step}\nITEM: NUMBER OF ATOMS\n{count}\n"
-                f"ITEM: BOX BOUNDS {' '.join('pp' if way else 'ff' for way in periodic)}\n"
+        if len(engine.colloid_positions):
+            write_frame(
+                self._directory / TRAJECTORY.file,
+                self.step,
+                self._system,
+                (engine.colloid_positions, engine.colloid_velocities, engine.colloid_images),
             )
-            file.writelines(f"{low:g} {high!r}\n" for low, high in ends)
-            file.write(f"ITEM: ATOMS {' '.join(TRAJECTORY.columns)}\n")
-            np.savetxt(file, columns, fmt="%d %d " + 6 * "%.10g " + "%d %d %d")
 
 
 _TITLES = {

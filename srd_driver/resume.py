@@ -27,12 +27,13 @@ from run_files.progress import (
     write_progress,
 )
 from run_files.progress import NAME as PROGRESS
-from run_files.reading import read_toml, refuse
-from run_files.writing import draft_of, replace_text
+from run_files.reading import refuse
+from run_files.writing import draft_of, replace_json, replace_text
 from srd_driver import run_lock
 from srd_driver.engines import checkpoint_suffix
 from srd_driver.errors import RunError
 
+SCRIPT = "in.lammps"
 MAKING = ".making"  # a folder for what the engine makes before a run begins
 
 
@@ -93,7 +94,9 @@ def create(scene: Scene, engine: str, directory: Path, ranks: int) -> Progress:
         write_scene(scene, engine, directory, ranks)
         for name in made:
             os.replace(making / name, directory / name)
-        return write_progress(directory, Progress(format=FORMAT, run=identity(scene, engine)))
+        read = {name: Checksum.of_file(directory / name) for name in made if name != SCRIPT}
+        progress = Progress(format=FORMAT, run=identity(scene, engine), checksums=read)
+        return write_progress(directory, progress)
     except OSError as error:
         raise RunError(f"cannot write {directory}: {error.strerror or error}") from None
     finally:
@@ -139,7 +142,7 @@ def reopen(scene: Scene, engine: str, directory: Path, ranks: int) -> Progress:
             for output in scene.system.outputs:
                 cut_output(directory / output.file, output.kind, progress.step)
             if has_deck(engine):
-                replace_text(directory / "in.lammps", script(scene, engine))
+                replace_text(directory / SCRIPT, script(scene, engine))
             write_scene(scene, engine, directory, ranks)
         except OSError as error:
             raise RunError(f"cannot write {directory}: {error.strerror or error}") from None
@@ -159,18 +162,16 @@ def tells_scene(directory: Path) -> bool:
 def stored_fields(directory: Path) -> dict[str, Any]:
     """The fields of the scene in a run directory, the scene's name as `scene`.
 
-    From its scene file; while the directory is being made there may only be the manifest.
+    From its manifest, which its scene file must not contradict.
 
     Raises:
         RunError: when the directory holds no run.
         RunDirectoryError: when the file is damaged.
     """
-    if (directory / SCENE).is_file():
-        return read_toml(directory / SCENE)
-    if tells_scene(directory):
-        told = read_manifest(directory)
-        return {"scene": told.scene, **told.fields}
-    raise RunError(f"{directory} is not a run directory: it has no {SCENE}")
+    if not tells_scene(directory):
+        raise RunError(f"{directory} is not a run directory: it has no {MANIFEST}")
+    told = read_manifest(directory)
+    return {**told.fields, "scene": told.scene}
 
 
 def newest_step(directory: Path) -> int:
@@ -179,12 +180,18 @@ def newest_step(directory: Path) -> int:
     Raises:
         RunDirectoryError: when the directory holds no run.
     """
-    step = read_progress(directory).step
-    tables = [output.file for output in read_manifest(directory).system.outputs]
-    for name in tables:
-        if name.endswith(".dat") and (directory / name).is_file():
-            step = max(step, _last_label(directory / name))
-    return step
+    return max(read_progress(directory).step, written_step(directory))
+
+
+def written_step(directory: Path) -> int:
+    """The last step that the tables and profiles of a directory tell of; 0 without any.
+
+    Raises:
+        RunDirectoryError: when the directory holds no run.
+    """
+    outputs = read_manifest(directory).system.outputs
+    files = [directory / each.file for each in outputs if each.kind != "trajectory"]
+    return max((_last_label(file) for file in files if file.is_file()), default=0)
 
 
 def _last_label(path: Path) -> int:
@@ -239,5 +246,5 @@ def write_scene(scene: Scene, engine: str, directory: Path, ranks: int = 1) -> N
             continue
     command = shlex.join([Path(sys.argv[0]).name, *sys.argv[1:]])
     content = manifest(scene, engine) | {"versions": versions, "command": command, "ranks": ranks}
-    replace_text(directory / MANIFEST, json.dumps(content, indent=2) + "\n")
+    replace_json(directory / MANIFEST, content)
     replace_text(directory / SCENE, scene.toml())

@@ -9,8 +9,8 @@ from pathlib import Path
 from types import TracebackType
 from typing import Any, Self, TextIO
 
-from lammps_inputs import Scene
-from lammps_inputs.engines import DEFAULT
+from lammps_inputs import Scene, SceneError
+from lammps_inputs.engines import default_engine
 from run_files.checksums import Checksum, GrowingFile
 from run_files.names import checkpoint_name
 from run_files.progress import FORMAT, Progress, is_begun, write_failure, write_progress
@@ -33,7 +33,7 @@ class Simulation:
 
     Args:
         scene: what to simulate.
-        engine: name of an engine (docs/scenes.md); default: our fix mpc.
+        engine: name of an engine (docs/scenes.md); default: our fix mpc, or what else can run it.
         directory: the run directory, new or empty; none: a temporary one, gone after `close`.
         resume: go on with the run in `directory` from its newest checkpoint, or begin it.
         checkpoint_interval: time between two checkpoints, in whole sampling intervals [t0].
@@ -49,13 +49,15 @@ class Simulation:
     def __init__(
         self,
         scene: Scene,
-        engine: str = DEFAULT,
+        engine: str | None = None,
         directory: str | Path | None = None,
         resume: bool = False,
         checkpoint_interval: float = 20.0,
     ) -> None:
         self.scene = scene
-        self.engine = engine
+        self.engine = engine or default_engine(scene.system)
+        if not checkpoint_interval >= 0:
+            raise SceneError.of_field("checkpoint_interval", checkpoint_interval, "must be a time")
         self._clock = scene.system.clock
         self._comm = communicator()
         require_engine(scene, self.engine, self._comm.size)
@@ -75,7 +77,7 @@ class Simulation:
             for output in scene.system.outputs
         }
         interval = self._clock.sample_steps * self._clock.time_step
-        samples = max(1, round(checkpoint_interval / interval))
+        samples = max(1, round(min(checkpoint_interval, self._clock.end) / interval))
         self._checkpoint_steps = samples * self._clock.sample_steps
         self._began = clock.perf_counter()
         self._piece = 1  # sampling intervals run between two reports
@@ -180,7 +182,12 @@ class Simulation:
 
     def _record(self, checkpoint: str, wall_seconds: float) -> Progress:
         """Leave word of a checkpoint that is written whole, and of what the outputs hold by now."""
-        written = {file: output.checksum() for file, output in self._outputs.items()}
+        written = {  # what the engine reads stays as it is
+            file: checksum
+            for file, checksum in self._progress.checksums.items()
+            if file != self._progress.checkpoint
+        }
+        written |= {file: output.checksum() for file, output in self._outputs.items()}
         written[checkpoint] = Checksum.of_file(self.directory / checkpoint)
         for file in written:
             reach_disk(self.directory / file)

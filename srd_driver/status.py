@@ -7,11 +7,17 @@ from typing import Literal
 from lammps_inputs import make_scene
 from run_files.manifest import read_manifest
 from run_files.progress import is_begun, read_failure, read_progress
-from srd_driver.resume import newest_step, stored_fields
+from srd_driver.resume import (
+    is_half_made,
+    newest_step,
+    stored_fields,
+    tells_scene,
+    written_step,
+)
 from srd_driver.run_lock import is_locked
 from srd_driver.sweep import Run, is_finished
 
-State = Literal["finished", "running", "failed", "stopped", "waiting"]
+State = Literal["finished", "running", "failed", "stopped", "waiting", "by hand"]
 
 
 @dataclass(frozen=True)
@@ -19,7 +25,8 @@ class Status:
     """How far a run is.
 
     Attributes:
-        state: stopped: half way, without an error (killed, or interrupted); waiting: not begun.
+        state: stopped: half way, without an error (killed, or interrupted); waiting: not begun;
+            by hand: a deck that `lmp` runs, or ran, half way.
         time: simulated so far, equilibration included [t0]; of a run that does not run now, up to
             its newest checkpoint.
         end: at which the run is finished [t0].
@@ -45,7 +52,9 @@ def status_of(run: Run) -> Status:
     step, end = clock.time_step, clock.end
     locked = is_locked(run.folder)
     if not is_begun(run.folder):
-        return Status("running" if locked else "waiting", 0.0, end, None, None)
+        if locked or is_half_made(run.folder) or not tells_scene(run.folder):
+            return Status("running" if locked else "waiting", 0.0, end, None, None)
+        return _status_of_deck(run.folder)
     finished = is_finished(run)
     progress = read_progress(run.folder)
     speed = progress.step * step / progress.wall_seconds if progress.wall_seconds else None
@@ -56,6 +65,14 @@ def status_of(run: Run) -> Status:
         return Status("running", newest_step(run.folder) * step, end, speed, None)
     state: State = "stopped" if failure is None else "failed"
     return Status(state, progress.step * step, end, speed, failure)
+
+
+def _status_of_deck(directory: Path) -> Status:
+    """How far a deck is that is run by hand, by its outputs; whether lmp still runs, none tells."""
+    clock = read_manifest(directory).system.clock  # as -var made it
+    done, end = written_step(directory), clock.total_steps
+    state: State = "finished" if done >= end else "by hand" if done else "waiting"
+    return Status(state, done * clock.time_step, end * clock.time_step, None, None)
 
 
 def stored_run(directory: Path) -> Run:

@@ -4,6 +4,7 @@ What is finished is told by the run directories alone, so the same runs may be s
 a kill, by another command or by a queueing system: finished ones are skipped, half ones go on.
 """
 
+import contextlib
 import os
 import signal
 import subprocess
@@ -13,6 +14,7 @@ from dataclasses import dataclass
 from pathlib import Path
 
 from lammps_inputs import Scene
+from run_files import RunDirectoryError
 from run_files.progress import is_begun, read_progress, write_failure
 from srd_driver import worker
 from srd_driver.resume import newest_step, refuse_another_scene, tells_scene
@@ -86,8 +88,14 @@ def run_all(
         RunError: before anything runs, when a run directory holds another scene or engine.
     """
     runs = list(dict.fromkeys(runs))
-    waiting = [run for run in runs if not is_finished(run)]
+    waiting: list[Run] = []
     failures: list[Failure] = []
+    for each in runs:
+        try:
+            if not is_finished(each):
+                waiting.append(each)
+        except RunDirectoryError as error:  # one damaged run does not stop the others
+            failures.append(Failure(each, str(error)))
     running: dict[Run, subprocess.Popen[bytes]] = {}
     try:
         while waiting or running:
@@ -178,4 +186,6 @@ def _advance(
 def _fraction(run: Run) -> float:
     if not is_begun(run.folder):
         return 0.0
-    return min(1.0, newest_step(run.folder) / run.scene.system.clock.total_steps)
+    with contextlib.suppress(RunDirectoryError):
+        return min(1.0, newest_step(run.folder) / run.scene.system.clock.total_steps)
+    return 0.0

@@ -3,17 +3,23 @@
 A point is one combination of the swept fields; its repeats differ by the seed alone.
 """
 
+import contextlib
 import itertools
+import math
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
 from lammps_inputs import SceneError, engine_named, make_scene
+from lammps_inputs.engines import DEFAULT, default_engine
+from run_files import RunDirectoryError
 from run_files.sweep_file import NAME, SweepFile, SweptRun, is_sweep, read_sweep, write_sweep
 from srd_driver.engines import require_engine
 from srd_driver.errors import RunError
 from srd_driver.sweep import Run, is_finished
+
+MOST_RUNS = 100_000  # what one sweep.json holds, and a file system in one folder
 
 
 @dataclass(frozen=True)
@@ -33,7 +39,7 @@ def plan(
     fields: Mapping[str, Any],
     over: Mapping[str, Sequence[Any]],
     repeats: int,
-    engine: str,
+    engine: str | None = None,
 ) -> Sweep:
     """The product of the lists of `over`, each point with the seeds seed, seed + 1, ...
 
@@ -41,6 +47,7 @@ def plan(
         fields: of the scene, for all points.
         over: the values of each swept field.
         repeats: runs of each point, R.
+        engine: of all runs; default: that of the first point.
 
     Raises:
         SceneError: naming each bad point, its field, value and what is allowed.
@@ -48,6 +55,9 @@ def plan(
     """
     if "seed" in over and repeats > 1:
         raise SceneError.of_field("repeats", repeats, "must be 1 where the seed is swept")
+    count = math.prod(len(values) for values in over.values()) * repeats
+    if count > MOST_RUNS:
+        raise SceneError([f"{count:.3g} runs: a sweep has at most {MOST_RUNS}"])
     runs: dict[str, Run] = {}
     problems: dict[str, list[str]] = {}
     for values in itertools.product(*over.values()):
@@ -59,6 +69,7 @@ def plan(
                 run_scene = make_scene(
                     scene, **(first.model_dump() | {"seed": first.seed + repeat})
                 )
+                engine = engine or default_engine(run_scene.system)
                 require_engine(run_scene, engine)
                 names = [*over, "seed"] if "seed" not in over else over
                 name = _label({field: getattr(run_scene, field) for field in names})
@@ -70,7 +81,7 @@ def plan(
                 problems.setdefault(problem, []).append(label)
     if problems:
         raise SceneError(f"{_points(labels)}: {text}" for text, labels in problems.items())
-    return Sweep(directory, scene, engine, tuple(over), tuple(runs.values()))
+    return Sweep(directory, scene, engine or DEFAULT, tuple(over), tuple(runs.values()))
 
 
 def store(sweep: Sweep) -> Sweep:
@@ -85,7 +96,8 @@ def store(sweep: Sweep) -> Sweep:
     """
     directory = sweep.directory
     for run in sweep.runs:
-        is_finished(run)
+        with contextlib.suppress(RunDirectoryError):  # told when it is its turn
+            is_finished(run)
     if is_sweep(directory):
         before = read(directory)
         if (before.scene, before.engine) != (sweep.scene, sweep.engine):

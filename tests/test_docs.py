@@ -7,6 +7,7 @@ from pathlib import Path
 
 import pytest
 
+from narrows.papers.table import main as renew_table
 from tests.conftest import ROOT
 
 PAGES = [ROOT / "README.md", *sorted((ROOT / "docs").glob("*.md"))]
@@ -17,6 +18,7 @@ WITH_EXAMPLES = [
     for path in sorted((ROOT / package).rglob("*.py"))
     if "\n    >>> " in path.read_text(encoding="utf-8")
 ]
+RESULTS = sorted((ROOT / "docs" / "results").glob("*.json"))
 LINK = re.compile(r"\]\(([^)\s]+)\)")
 HEADING = re.compile(r"^#+ (.*)$", re.MULTILINE)
 
@@ -69,3 +71,12 @@ def test_the_python_of_the_readme(capsys: pytest.CaptureFixture[str]) -> None:
     (block,) = re.findall(r"^```python\n(.*?)^```$", PAGES[0].read_text(), re.MULTILINE | re.DOTALL)
     exec(compile(block, "README.md", "exec"), {})
     assert len(capsys.readouterr().out.strip().splitlines()) == 5  # a line a colloid
+
+
+@pytest.mark.parametrize("results", RESULTS, ids=lambda path: path.stem)
+def test_tables_of_papers_are_those_of_the_results_kept(results: Path, tmp_path: Path) -> None:
+    page = tmp_path / "page.md"
+    page.write_text((ROOT / "docs" / "reproduce.md").read_text(encoding="utf-8"), encoding="utf-8")
+    before = page.read_text(encoding="utf-8")
+    renew_table(str(results), str(page), results.stem)
+    assert page.read_text(encoding="utf-8") == before

@@ -92,11 +92,13 @@ def test_spheres_are_the_same_in_the_reference(tmp_path: Path) -> None:
 def kill_and_resume(scene: Scene, engine: str, directory: Path) -> None:
     """Begin the run in another process, kill it amid its work, and go on here."""
     code = (
-        "import sys, lammps_inputs; from srd_driver import Simulation\n"
-        f"scene = lammps_inputs.make_scene({scene.name!r}, **{scene.model_dump()!r})\n"
+        "import json, sys, lammps_inputs; from srd_driver import Simulation\n"
+        f"scene = lammps_inputs.make_scene({scene.name!r}, **json.loads(sys.argv[2]))\n"
         f"Simulation(scene, {engine!r}, sys.argv[1], checkpoint_interval=0.2).finish()"
     )
-    process = subprocess.Popen([sys.executable, "-c", code, str(directory)], cwd=ROOT)
+    process = subprocess.Popen(
+        [sys.executable, "-c", code, str(directory), scene.model_dump_json()], cwd=ROOT
+    )
     progress = directory / "progress.json"
     while process.poll() is None:
         if progress.exists() and json.loads(progress.read_text())["step"] > 0:

@@ -4,7 +4,7 @@ import numpy as np
 from matplotlib.figure import Figure
 from numpy.typing import NDArray
 
-from analysis import blocking
+from analysis import correlated_mean
 from analysis.clusters import BOND, ClusterSeries, cluster_series, labels
 from analysis.drawing import TIME, mark_equilibration, one_panel
 from analysis.findings import Findings
@@ -22,7 +22,7 @@ def measure(run: RunDirectory) -> Findings:
     series = cluster_series(particles.positions[::stride], box.sizes, box.periodic, distance)
     late = used[::stride]
     entry: dict[str, object] = {
-        name: blocking.mean(getattr(series, name)[late]).as_json()
+        name: correlated_mean.mean(getattr(series, name)[late], stride * run.interval).as_json()
         for name in ("largest", "number", "bonds_per_colloid", "alone")
     }
     entry["bond_length"] = distance

@@ -1,6 +1,6 @@
 """Temperature of the colloids, from their velocities across the channel."""
 
-from analysis import blocking
+from analysis import correlated_mean
 from analysis.findings import Findings
 from analysis.health import temperature_warnings
 from analysis.measures.settling_speed import sampled_frames
@@ -13,7 +13,9 @@ TOLERANCE = 0.05
 def measure(run: RunDirectory) -> Findings:
     """Mean over time; a warning when it is off kBT = 1."""
     velocities = run.particles().velocities[sampled_frames(run)]
-    temperature = blocking.mean(colloid_temperature(velocities, run.species().mass))
+    temperature = correlated_mean.mean(
+        colloid_temperature(velocities, run.species().mass), run.interval
+    )
     return Findings(
         {"colloid_temperature": temperature.as_json()},
         warnings=temperature_warnings("colloids", temperature, TOLERANCE),

@@ -1,6 +1,6 @@
 """Temperature of the fluid, without its streaming profile."""
 
-from analysis import blocking
+from analysis import correlated_mean
 from analysis.findings import Findings
 from analysis.health import temperature_warnings
 from analysis.run_directory import RunDirectory
@@ -11,7 +11,9 @@ TOLERANCE = 0.01  # fix srd rescales to 0.993
 def measure(run: RunDirectory) -> Findings:
     """Mean over time; a warning when it is off kBT = 1."""
     table = run.table()
-    temperature = blocking.mean(table["fluid_temperature"][run.sampled(table.steps)])
+    temperature = correlated_mean.mean(
+        table["fluid_temperature"][run.sampled(table.steps)], run.interval
+    )
     return Findings(
         {"temperature": temperature.as_json()},
         warnings=temperature_warnings("fluid", temperature, TOLERANCE),

@@ -1,7 +1,8 @@
 """Flow that gravity drives through a slit: a parabola, which tells the viscosity."""
 
-from analysis import blocking, flow
-from analysis.blocking import Estimate, ratio
+from analysis import correlated_mean, flow
+from analysis.correlated_mean import ratio
+from analysis.estimate import Estimate
 from analysis.findings import Findings
 from analysis.measures.slit_flow import slit_flow
 from analysis.run_directory import RunDirectory
@@ -23,9 +24,10 @@ def measure(run: RunDirectory) -> Findings:
         )
     except ValueError as error:
         raise RunDirectoryError(f"{run.path / 'fluid_profile.dat'}: {error}") from None
-    maximum = blocking.mean(v_max)
+    maximum = correlated_mean.mean(v_max, run.interval)
     viscosity = viscosity_of_maximum(maximum, gravity, run.width)
-    curvature = viscosity_of_maximum(blocking.mean(v_max - v_wall), gravity, run.width)
+    above_wall = correlated_mean.mean(v_max - v_wall, run.interval)
+    curvature = viscosity_of_maximum(above_wall, gravity, run.width)
     theory = {"theory": run.solvent.viscosity_theory}
     flow_found = slit_flow(run, fit=(float(v_max.mean()), float(v_wall.mean())))
     entries = {
@@ -46,6 +48,4 @@ def viscosity_of_maximum(maximum: Estimate, gravity: float, width: float) -> Est
         return Estimate(None, None, "no gravity")
     if maximum.value is None or maximum.value * gravity <= 0:
         return Estimate(None, None, "the fluid does not flow along gravity")
-    value = gravity * width**2 / (8 * maximum.value)
-    error = None if maximum.error is None else value * maximum.error / abs(maximum.value)
-    return Estimate(value, error, maximum.reason)
+    return gravity * width**2 / 8 / maximum

@@ -5,7 +5,7 @@ import math
 import numpy as np
 from matplotlib.figure import Figure
 
-from analysis import blocking
+from analysis import correlated_mean
 from analysis.drawing import TIME, mark_equilibration, one_panel
 from analysis.findings import Findings, in_si
 from analysis.measures.settling_speed import sampled_frames
@@ -31,7 +31,7 @@ def measure(run: RunDirectory) -> Findings:
     speeds = settling_speeds(speed, of_fluid, mean, phi)
     used = run.sampled(table.steps)[:count]
     entry = {
-        name: in_si(run, blocking.mean(series[used]), length=1, time=-1)
+        name: in_si(run, correlated_mean.mean(series[used], run.interval), length=1, time=-1)
         for name, series in vars(speeds).items()
     }
     picture = draw(run.times(table.steps[:count]), speeds, run.equilibration_time)

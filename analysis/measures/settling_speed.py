@@ -4,7 +4,7 @@ import numpy as np
 from matplotlib.figure import Figure
 from numpy.typing import NDArray
 
-from analysis import blocking
+from analysis import correlated_mean
 from analysis.drawing import TIME, mark_equilibration, one_panel
 from analysis.findings import Findings
 from analysis.run_directory import RunDirectory
@@ -16,7 +16,10 @@ def measure(run: RunDirectory) -> Findings:
     """Means over time in both frames, and their history."""
     sampled_frames(run)
     series = settling_series(run)
-    moving, rest = (blocking.mean(v[series.used]) for v in (series.co_moving, series.rest))
+    moving, rest = (
+        correlated_mean.mean(speed[series.used], run.interval)
+        for speed in (series.co_moving, series.rest)
+    )
     return Findings(
         {"settling_speed": moving.as_json(), "settling_speed_rest": rest.as_json()},
         {"settling_speed.png": draw(series, run.equilibration_time)},

@@ -3,9 +3,9 @@
 import numpy as np
 from matplotlib.figure import Figure
 
-from analysis import blocking
-from analysis.blocking import Estimate
+from analysis import correlated_mean
 from analysis.drawing import one_panel
+from analysis.estimate import Estimate
 from analysis.findings import Findings
 from analysis.measures.settling_speed import sampled_frames
 from analysis.run_directory import Array, RunDirectory
@@ -20,10 +20,10 @@ def measure(run: RunDirectory) -> Findings:
     positions, velocities = particles.positions[used], particles.velocities[used]
     z, v = positions[:, :, 2] - 0.5 * height, velocities[:, :, 0]
     slopes = (z * v).mean(axis=1) / (z**2).mean()
-    rate = blocking.mean(slopes)
+    rate = correlated_mean.mean(slopes, run.interval)
     layer = np.clip(((z / height + 0.5) * LAYERS).astype(int), 0, LAYERS - 1)
     profile = [
-        blocking.mean(
+        correlated_mean.mean(
             [
                 row[at == number].mean()
                 for row, at in zip(v, layer, strict=True)
@@ -37,7 +37,9 @@ def measure(run: RunDirectory) -> Findings:
     imposed = 2 * max(wall.velocity[0] for wall in run.manifest.system.walls) / height
     entry = {"rate": rate.as_json(), "imposed": imposed, "profile": [p.as_json() for p in profile]}
     middle = height * (np.arange(LAYERS) + 0.5) / LAYERS
-    return Findings({"shear": entry}, {"shear.png": draw(middle, profile, imposed, height)})
+    return Findings(
+        {"shear_flow": entry}, {"shear_flow.png": draw(middle, profile, imposed, height)}
+    )
 
 
 def draw(middle: Array, profile: list[Estimate], imposed: float, height: float) -> Figure:

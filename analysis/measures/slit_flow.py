@@ -4,9 +4,9 @@ import numpy as np
 from matplotlib.figure import Figure
 from numpy.typing import NDArray
 
-from analysis import blocking, flow
-from analysis.blocking import Estimate
+from analysis import correlated_mean, flow
 from analysis.drawing import one_panel
+from analysis.estimate import Estimate
 from analysis.findings import Findings
 from analysis.run_directory import RunDirectory
 
@@ -23,7 +23,7 @@ def slit_flow(run: RunDirectory, fit: tuple[float, float] | None) -> Findings:
     fluid = run.profile()
     used = run.sampled(fluid.steps)
     counts, velocity = fluid.counts[used], fluid.velocity_x[used]
-    mean_velocity = blocking.mean(flow.mean_velocity(counts, velocity))
+    mean_velocity = correlated_mean.mean(flow.mean_velocity(counts, velocity), run.interval)
     theory = run.solvent.viscosity_theory
     if theory is None:
         reynolds = Estimate(None, None, "kinetic theory has no viscosity for this fluid")

@@ -2,7 +2,7 @@
 
 from matplotlib.figure import Figure
 
-from analysis.blocking import Estimate
+from analysis.estimate import Estimate
 from analysis.findings import Findings, in_si
 from analysis.measures.settling_speed import sampled_frames
 from analysis.run_directory import RunDirectory

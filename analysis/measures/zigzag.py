@@ -5,8 +5,7 @@ from matplotlib.figure import Figure
 from matplotlib.ticker import MaxNLocator
 from numpy.typing import NDArray
 
-from analysis import blocking, chain
-from analysis.blocking import root
+from analysis import chain, correlated_mean
 from analysis.drawing import TIME, mark_equilibration
 from analysis.findings import Findings
 from analysis.measures.settling_speed import sampled_frames
@@ -21,7 +20,7 @@ def measure(run: RunDirectory) -> Findings:
     amplitude, local = chain.zigzag_amplitude(y, run.width), chain.local_zigzag(y)
     displacement = float(np.sqrt(((y[used] - run.width / 2) ** 2).mean()))
     entry = {
-        "amplitude_rms": root(blocking.mean(amplitude[used] ** 2)).as_json(),
+        "amplitude_rms": correlated_mean.mean(amplitude[used] ** 2, run.interval).sqrt().as_json(),
         "displacement_rms": displacement,
         "uncorrelated_rms": displacement / np.sqrt(y.shape[1]),
         "local_rms": np.sqrt((local[used] ** 2).mean(axis=0)).tolist(),

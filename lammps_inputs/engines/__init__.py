@@ -9,6 +9,7 @@ from functools import cache
 
 from lammps_inputs.engines.engine import Engine, LammpsEngine
 from lammps_inputs.scene import SceneError
+from lammps_inputs.system import System
 
 DEFAULT = "mpc"
 
@@ -22,6 +23,11 @@ def all_engines() -> dict[str, Engine]:
     )
     known: list[Engine] = [module.ENGINE for module in modules if hasattr(module, "ENGINE")]
     return {each.name: each for each in sorted(known, key=lambda e: (e.name != DEFAULT, e.name))}
+
+
+def default_engine(system: System) -> str:
+    """The first engine that can do a system; where none can, the one whose reasons are shown."""
+    return next((e.name for e in all_engines().values() if not [*e.problems(system)]), DEFAULT)
 
 
 def engine_named(name: str) -> Engine:

@@ -23,9 +23,11 @@ class Engine(ABC):
 
     Attributes:
         name: on the command line.
-        plugin: whether LAMMPS needs our compiled styles for it.
+        plugin: whether LAMMPS needs our compiled styles for each of its decks.
         processes: whether it runs under mpirun.
         pair_potentials, wall_potentials, motions: classes of the parts that it knows.
+        reactions: whether it lets colours react.
+        rests: whether it can let a system rest before the run.
         couplings: of species to a solvent that it knows.
     """
 
@@ -35,6 +37,8 @@ class Engine(ABC):
     pair_potentials: ClassVar[tuple[type[PairPotential], ...]]
     wall_potentials: ClassVar[tuple[type[WallPotential], ...]]
     motions: ClassVar[tuple[type[Motion], ...]]
+    reactions: ClassVar[bool] = False
+    rests: ClassVar[bool] = False
     couplings: ClassVar[tuple[Coupling, ...]] = ("force",)
 
     @abstractmethod
@@ -44,6 +48,10 @@ class Engine(ABC):
     def warnings(self, system: System) -> Iterator[str]:
         """What it does inaccurately, one line each."""
         yield from ()
+
+    def needs_plugin(self, system: System) -> bool:
+        """Whether LAMMPS needs our compiled styles for a system."""
+        return self.plugin
 
     def seeds(self, seed: int, step: int) -> dict[str, int]:
         """Its random seeds, by name, for a start at a step."""
@@ -61,6 +69,10 @@ class Engine(ABC):
                     yield f"{potential!r} of a wall for {name}: engine {self.name} has no such"
         if not isinstance(system.motion, self.motions):
             yield f"{system.motion!r}: engine {self.name} has no such motion"
+        if system.reactions and not self.reactions:
+            yield f"{system.reactions!r}: engine {self.name} has no such"
+        if system.rest and not self.rests:
+            yield f"{system.rest!r}: engine {self.name} has no rest before the run"
         if system.solvent and system.solvent.coupling not in self.couplings:
             known = " or ".join(self.couplings)
             yield f"coupling = {system.solvent.coupling!r}: engine {self.name} has {known} only"
@@ -90,7 +102,7 @@ class Engine(ABC):
     def needs_solvent(self, system: System) -> Iterator[str]:
         """A line where there is no fluid."""
         if system.solvent is None:
-            yield f"engine = {self.name!r}: it is a fluid, and the scene has none; use 'md'"
+            yield f"engine = {self.name!r}: it is a fluid, and the scene has none"
 
     def needs_walls_or_periodic(self, system: System) -> Iterator[str]:
         """A line for each axis that is neither periodic nor between two walls."""
@@ -130,6 +142,10 @@ class LammpsEngine(Engine):
     @abstractmethod
     def motion(self, system: System) -> Iterator[str]:
         """What moves and pulls the particles, and walls and drives."""
+
+    def preparation(self, system: System, start: Start) -> Iterator[str]:
+        """What comes before step 0."""
+        yield from ()
 
     def solvent(self, system: System, start: Start) -> Iterator[str]:
         """The fluid."""

@@ -28,22 +28,27 @@ def groups(system: System) -> Iterator[str]:
         yield f"group {particle_group(system)} type {' '.join(map(str, types.values()))}"
 
 
-def pairs(system: System, seed: str = "${seed}") -> Iterator[str]:
-    """The pair style of the species, which `one_pair_style` has checked; its seed's variable."""
+def pairs(system: System, overlay: str = "", seed: str = "${seed}") -> Iterator[str]:
+    """The pair style of the species, which `one_pair_style` has checked; another laid over it.
+
+    `seed` is the variable of the deck for a style that draws random numbers.
+    """
     types = system.types()
     between = system.particle_interactions()
     for interaction in between:
         yield f"# {interaction.potential.title} {_between(interaction)}"
     first = between[0].potential
     cutoff = max(interaction.potential.cutoff for interaction in between)
-    yield f"pair_style {first.pair_style} {cutoff!r}{first.pair_arguments(seed)}"
+    style = f"{first.pair_style}{first.pair_arguments(cutoff, seed)}"
+    yield f"pair_style hybrid/overlay {style} {overlay}" if overlay else f"pair_style {style}"
+    named = f" {first.pair_style}" if overlay else ""
     missing = {(a, b) for a in types.values() for b in types.values() if a <= b}
     for interaction in between:
         low, high = sorted((types[interaction.first], types[interaction.second]))
         missing.discard((low, high))
-        yield interaction.potential.pair_coeff(f"{low} {high}")
+        yield interaction.potential.pair_coeff(f"{low} {high}{named}")
     for low, high in sorted(missing):
-        yield first.no_pair_coeff(f"{low} {high}")
+        yield first.no_pair_coeff(f"{low} {high}{named}")
 
 
 def _between(interaction: Interaction) -> str:
@@ -122,6 +127,8 @@ def data_header(system: System, title: str, atoms: int, types: int) -> Iterator[
     for axis, (name, size) in enumerate(zip("xyz", sizes, strict=True)):
         low, high = (0.0, size) if axis < system.box.dimensions else (-0.5, 0.5)
         yield f"{low!r} {high!r} {name}lo {name}hi\n"
+    if system.shear_rate:
+        yield "0.0 0.0 0.0 xy xz yz\n"
 
 
 def particle_data(system: System, state: InitialState, title: str) -> Iterable[str]:

@@ -4,7 +4,7 @@ from collections.abc import Iterator
 from pathlib import Path
 from typing import ClassVar
 
-from lammps_inputs.engines import lammps
+from lammps_inputs.engines import lammps, soft_particles
 from lammps_inputs.engines.engine import LammpsEngine, Start
 from lammps_inputs.initial_state import InitialState
 from lammps_inputs.potentials.integrated_wall import IntegratedWall
@@ -21,12 +21,19 @@ EXPRESSIONS = {
 
 
 class MolecularDynamics(LammpsEngine):
-    """Newton's equations and nothing else."""
+    """Newton's equations, or those of a thermostat, of particles alone."""
 
     name: ClassVar[str] = "md"
-    pair_potentials = (RepulsiveMie,)
+    pair_potentials = (RepulsiveMie, *soft_particles.POTENTIALS)
     wall_potentials = (IntegratedWall,)
-    motions = (VelocityVerlet,)
+    motions = (VelocityVerlet, *soft_particles.MOTIONS)
+    rests = True
+
+    def needs_plugin(self, system: System) -> bool:
+        return soft_particles.needs_plugin(system)
+
+    def seeds(self, seed: int, step: int) -> dict[str, int]:
+        return soft_particles.seeds(seed, step)
 
     def problems(self, system: System) -> Iterator[str]:
         if system.solvent:
@@ -35,11 +42,12 @@ class MolecularDynamics(LammpsEngine):
             yield f"engine = {self.name!r}: the scene has no interacting particles"
         yield from self.unknown_parts(system)
         yield from lammps.one_pair_style(system)
+        yield from soft_particles.problems(system)
         for axis, periodic in enumerate(system.box.periodic):
             sides = sorted(wall.side for wall in system.walls_on(axis) if wall.potentials)
             if not periodic and sides != ["lower", "upper"]:
                 yield f"walls across the {SIZES[axis]}: one on either side must repel particles"
-        yield from self.needs_known_tables(system, EXPRESSIONS)
+        yield from self.needs_known_tables(system, _expressions(system))
         for output in system.outputs:
             if output.kind == "profile":
                 yield f"{output.file}: engine {self.name} writes no profile"
@@ -51,15 +59,20 @@ class MolecularDynamics(LammpsEngine):
             yield from lammps.groups(system)
 
     def interactions(self, system: System) -> Iterator[str]:
-        yield from lammps.pairs(system)
+        yield from lammps.pairs(system, soft_particles.dissipative_style(system))
+        yield from soft_particles.dissipative_pairs(system)
         yield f"pair_modify {system.particle_interactions()[0].potential.pair_modify}"
         yield f"neighbor {SKIN!r} bin"
         yield "neigh_modify delay 0 every 1 check yes"
         yield "# when lists are built shows in last digits: as at checkpoints, so at each output"
         yield "fix lists all balance ${sample} 1e9 shift x 1 1.1 # never that imbalanced"
 
+    def preparation(self, system: System, start: Start) -> Iterator[str]:
+        if not start.checkpoint:
+            yield from soft_particles.preparation(system)
+
     def motion(self, system: System) -> Iterator[str]:
-        yield "fix motion all nve"
+        yield from soft_particles.motion(system)
         if system.box.dimensions == 2:
             yield "fix plane all enforce2d"
         for name, species, potential, faces in lammps.wall_faces(system):
@@ -68,11 +81,12 @@ class MolecularDynamics(LammpsEngine):
         yield from lammps.drives(system)
 
     def averages(self, system: System, start: Start) -> Iterator[str]:
+        yield from soft_particles.computes(system)
         yield "# output, averaged over each sampling interval"
         for output in system.outputs:
             if output.kind == "table":
                 for column in output.columns:
-                    yield f"variable {column} equal {EXPRESSIONS[column]}"
+                    yield f"variable {column} equal {_expressions(system)[column]}"
 
     def write(self, system: System, state: InitialState, title: str, directory: Path) -> None:
         with (directory / "state.data").open("w", encoding="utf-8") as file:
@@ -81,6 +95,10 @@ class MolecularDynamics(LammpsEngine):
         for name, _, potential, _ in lammps.wall_faces(system):
             assert isinstance(potential, IntegratedWall), "problems() has checked it"
             (directory / f"{name}.table").write_text(potential.table_text(), encoding="utf-8")
+
+
+def _expressions(system: System) -> dict[str, str]:
+    return EXPRESSIONS | soft_particles.expressions(system)
 
 
 ENGINE = MolecularDynamics()

@@ -114,7 +114,7 @@ class Srd(LammpsEngine):
         yield f"neigh_modify delay 0 every 1 check yes include {group}"
         yield f"comm_modify mode multi group {group} vel yes"
         yield ""
-        yield from lammps.pairs(system, "${seed_collision}")
+        yield from lammps.pairs(system, seed="${seed_collision}")
         first = system.particle_interactions()[0].potential
         yield first.no_pair_coeff(f"* {len(system.species) + 1}")
         yield f"pair_modify {first.pair_modify}"

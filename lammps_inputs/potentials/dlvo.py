@@ -202,9 +202,9 @@ class Dlvo:
         """The LAMMPS style."""
         return "dlvo"
 
-    def pair_arguments(self, seed: str) -> str:
-        """Temperature of the fluctuations, that of the fluid, and their seed."""
-        return f" 1.0 {seed}"
+    def pair_arguments(self, cutoff: float, seed: str) -> str:
+        """The cutoff, the temperature of the fluctuations, that of the fluid, and their seed."""
+        return f" {cutoff!r} 1.0 {seed}"
 
     @property
     def pair_modify(self) -> str:

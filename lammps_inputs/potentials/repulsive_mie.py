@@ -35,9 +35,9 @@ class RepulsiveMie:
         """The LAMMPS style."""
         return "mie/cut"
 
-    def pair_arguments(self, seed: str) -> str:
-        """None."""
-        return ""
+    def pair_arguments(self, cutoff: float, seed: str) -> str:
+        """The cutoff."""
+        return f" {cutoff!r}"
 
     @property
     def dissipates(self) -> bool:

@@ -30,7 +30,7 @@ def all_scenes() -> dict[str, type[Scene]]:
     return dict(sorted(known.items()))
 
 
-def make_scene(name: str, **fields: Any) -> Scene:
+def make_scene(name: str, /, **fields: Any) -> Scene:
     """The scene of that name.
 
     Raises:

@@ -53,7 +53,7 @@ def _quantity(unit: str) -> BeforeValidator:
     return BeforeValidator(lambda value: si(value, unit))
 
 
-Length = Annotated[float, _quantity("m"), Field(gt=0)]
+Length = Annotated[float, _quantity("m"), Field(ge=1e-10, le=1)]
 
 
 class Claylike(Scene):
@@ -67,6 +67,9 @@ class Claylike(Scene):
     """
 
     name: ClassVar[str] = "claylike"
+    si_fields: ClassVar[tuple[str, ...]] = (
+        *("radius", "cell_edge", "kappa", "hamaker", "temperature", "viscosity"),
+    )
 
     cells: Annotated[int, Field(ge=2, le=1000)] = Field(
         default=15, description="edge of the cubic box in collision cells"
@@ -108,13 +111,13 @@ class Claylike(Scene):
     volume_fraction: Annotated[float, Field(gt=0, lt=0.74)] = Field(
         default=0.14, description="of the colloids, phi"
     )
-    kappa: Annotated[float, _quantity("1/m"), Field(gt=0)] = Field(
+    kappa: Annotated[float, _quantity("1/m"), Field(ge=1, le=1e12)] = Field(
         default=2e8, description="inverse screening length [1/m]"
     )
     surface_potential: Annotated[float, _quantity("V"), Field(ge=0, le=1)] = Field(
         default=0.02, description="effective surface potential Psi_0 [V]"
     )
-    hamaker: Annotated[float, _quantity("J"), Field(gt=0)] = Field(
+    hamaker: Annotated[float, _quantity("J"), Field(ge=1e-26, le=1e-12)] = Field(
         default=4.76e-20, description="Hamaker constant A_H [J]"
     )
     minimum_depth: Positive = Field(
@@ -126,7 +129,7 @@ class Claylike(Scene):
     friction: NonNegative = Field(
         default=10.0, description="of surfaces in contact, across and along (6) [m_f/t0]"
     )
-    temperature: Annotated[float, _quantity("K"), Field(gt=0)] = Field(
+    temperature: Annotated[float, _quantity("K"), Field(ge=0.1, le=1e5)] = Field(
         default=300.0, description="temperature of the suspension T [K]"
     )
     particle_density: Annotated[float, _quantity("kg/m^3"), Field(gt=0)] = Field(
@@ -135,7 +138,7 @@ class Claylike(Scene):
     fluid_density: Annotated[float, _quantity("kg/m^3"), Field(gt=0)] = Field(
         default=1000.0, description="mass density of the liquid rho_w [kg/m^3]"
     )
-    viscosity: Annotated[float, _quantity("m^2/s"), Field(gt=0)] = Field(
+    viscosity: Annotated[float, _quantity("m^2/s"), Field(ge=1e-12, le=1e3)] = Field(
         default=1e-6, description="kinematic viscosity of the liquid nu [m^2/s]"
     )
     peclet: NonNegative = Field(

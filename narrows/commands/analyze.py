@@ -1,5 +1,6 @@
 """`narrows analyze`: the numbers of a run, or of all runs of a sweep, with their errors."""
 
+import re
 from pathlib import Path
 from typing import Annotated
 
@@ -30,14 +31,14 @@ def analyze(
     headings = ("quantity", "value", "error", "note")
     table = Table(*headings, title=printable(title), title_justify="left")
     for path, entry in estimates(summary).items():
-        name = path.replace(".", " ").replace("_", " ")
+        name = re.sub(r"(?<!\d)\.|\.(?!\d)", " ", path).replace("_", " ")  # not in numbers
         theory = entry.get("theory")
         note = entry.get("reason") or ("" if theory is None else f"theory {theory:.5g}")
         numbers = _number(entry["value"], 5), _number(entry["error"], 2)
         table.add_row(printable(name), *numbers, printable(note))
     console = Console(markup=False, emoji=False)
     console.print(table)
-    files = ["summary.json", *summary["figures"]]
+    files = ["summary.json", *summary.get("tables", ()), *summary["figures"]]
     files_line = f"written to {directory}: {', '.join(files)}"
     console.print(printable(files_line), highlight=False, soft_wrap=True)
     warn(summary["warnings"])

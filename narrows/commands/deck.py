@@ -6,8 +6,8 @@ from typing import Annotated
 import typer
 
 import lammps_plugin
-from lammps_inputs.deck import warnings, write_deck
-from lammps_inputs.engines import DEFAULT, lammps_engine_named
+from lammps_inputs.deck import check_engine, warnings, write_deck
+from lammps_inputs.engines import default_engine, lammps_engine_named
 from narrows.messages import say, user_errors, warn
 from narrows.scene_options import DECKS, SceneFile, SceneName, Settings, scene_of
 from srd_driver import RunError
@@ -19,11 +19,14 @@ def deck(
     out: Annotated[Path, typer.Option("--out", metavar="DIR", help="a new or empty folder")],
     file: SceneFile = None,
     settings: Settings = None,
-    engine: Annotated[str, typer.Option(metavar=DECKS, help="whose deck")] = DEFAULT,
+    engine: Annotated[str | None, typer.Option(metavar=DECKS, help="whose deck")] = None,
 ) -> None:
     """Write a folder that runs with `lmp -in in.lammps`."""
     with user_errors():
-        chosen, plugin = scene_of(scene, file, settings), lammps_engine_named(engine).plugin
+        chosen = scene_of(scene, file, settings)
+        engine = engine or default_engine(chosen.system)
+        plugin = lammps_engine_named(engine).needs_plugin(chosen.system)
+        check_engine(chosen, engine)
         warn(warnings(chosen, engine))
         out.mkdir(parents=True, exist_ok=True)
         if any(out.iterdir()):

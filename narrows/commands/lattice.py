@@ -2,8 +2,10 @@
 
 from __future__ import annotations
 
+import functools
 import json
 import math
+from collections.abc import Callable
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Any, NoReturn
 
@@ -26,10 +28,27 @@ Figures = Annotated[
 ]
 
 
+LONGEST = 1e9  # time, in inverse units of the rates
+MOST = 10_000_000  # sites, cells, runs or samples
+
+
 def _refuse(message: object) -> NoReturn:
     """One message on stderr, exit code 2."""
     typer.echo(printable(f"narrows lattice: {message}"), err=True)
     raise typer.Exit(2)
+
+
+def _refusing(command: Callable[..., None]) -> Callable[..., None]:
+    """What a user can mend is one message."""
+
+    @functools.wraps(command)
+    def refusing(*arguments: Any, **options: Any) -> None:
+        try:
+            command(*arguments, **options)
+        except (ValueError, ArithmeticError, OSError) as error:
+            _refuse(error)
+
+    return refusing
 
 
 def _read(path: Path) -> tuple[LatticeGas, float, float]:
@@ -55,8 +74,8 @@ def _numbers(text: str) -> list[float]:
         values = [float(part) for part in text.split(",")]
     except ValueError:
         _refuse(f"--times {text}: must be numbers separated by commas")
-    if not all(math.isfinite(value) and value >= 0 for value in values):
-        _refuse(f"--times {text}: must be finite and not negative")
+    if not all(0 <= value <= LONGEST for value in values):
+        _refuse(f"--times {text}: must be between 0 and {LONGEST:g}")
     return values
 
 
@@ -64,6 +83,7 @@ BY_SITE = ("stationary_profile", "stationary_currents", "domain_wall_profile")  
 
 
 @app.command()
+@_refusing
 def check(
     file: File,
     sites: Annotated[int, typer.Option(metavar="L", min=2, help="sites of the full generator")] = 7,
@@ -80,10 +100,7 @@ def check(
 
     model, z1, z2 = _read(file)
     moments = None if times is None else _numbers(times)
-    try:
-        report = examine(model, sites, z1, z2, start, moments)
-    except ValueError as error:
-        _refuse(error)
+    report = examine(model, sites, z1, z2, start, moments)
     _write(out, report.as_json())
     for condition in report.conditions:
         typer.echo(f"({condition.equation}) {condition.statement}: off by {condition.residual:.3g}")
@@ -101,15 +118,17 @@ def check(
 
 
 @app.command()
+@_refusing
 def simulate(
     file: File,
-    sites: Annotated[int, typer.Option(metavar="L", min=2)] = 10_000,
-    replicas: Annotated[int, typer.Option(min=2, help="independent runs")] = 20,
+    sites: Annotated[int, typer.Option(metavar="L", min=2, max=MOST)] = 10_000,
+    replicas: Annotated[int, typer.Option(min=2, max=MOST, help="independent runs")] = 20,
     time: Annotated[
-        float, typer.Option(min=0, help="length of each run, in inverse units of the rates")
+        float,
+        typer.Option(min=0, max=LONGEST, help="length of each run, in inverse units of the rates"),
     ] = 200.0,
     samples: Annotated[
-        int, typer.Option(min=3, help="equally spaced samples, first at time 0")
+        int, typer.Option(min=3, max=MOST, help="equally spaced samples, first at time 0")
     ] = 41,
     seed: Annotated[int, typer.Option(min=0, help="equal seeds give equal results")] = 1,
     start: Annotated[
@@ -126,17 +145,14 @@ def simulate(
     model, z1, z2 = _read(file)
     start = sites // 2 if start is None else start
     tracked = z1 != z2 and not model.periodic
-    try:
-        ensemble = monte_carlo.simulate(
-            model,
-            shocks.shock_marginals(model, sites, start, z1, z2),
-            np.linspace(0.0, time, samples),
-            replicas,
-            seed,
-            monte_carlo.shock_evidence(model, z1, z2) if tracked else None,
-        )
-    except ValueError as error:
-        _refuse(error)
+    ensemble = monte_carlo.simulate(
+        model,
+        shocks.shock_marginals(model, sites, start, z1, z2),
+        np.linspace(0.0, time, samples),
+        replicas,
+        seed,
+        monte_carlo.shock_evidence(model, z1, z2) if tracked else None,
+    )
     current, current_error = ensemble.mean_current()
     last = ensemble.occupation[-1]
     data: dict[str, Any] = {
@@ -188,17 +204,18 @@ def simulate(
 
 
 @app.command()
+@_refusing
 def hydro(
     file: File,
     times: Annotated[
         str, typer.Option(metavar="T1,T2", help="macroscopic times t' = t/L")
     ] = "0.1,0.2",
-    cells: Annotated[int, typer.Option(min=2, help="cells of the Godunov scheme")] = 400,
+    cells: Annotated[int, typer.Option(min=2, max=MOST, help="cells of the Godunov scheme")] = 400,
     sites: Annotated[
-        int, typer.Option(metavar="L", min=2, help="sites of the Monte Carlo run")
+        int, typer.Option(metavar="L", min=2, max=MOST, help="sites of the Monte Carlo run")
     ] = 2000,
     replicas: Annotated[
-        int, typer.Option(min=0, help="Monte Carlo runs to compare with (0: none)")
+        int, typer.Option(min=0, max=MOST, help="Monte Carlo runs to compare with (0: none)")
     ] = 0,
     seed: Annotated[int, typer.Option(min=0)] = 1,
     out: Json = None,
@@ -217,10 +234,7 @@ def hydro(
             f"{residual:.3g}): j is a mean-field estimate",
             err=True,
         )
-    try:
-        result = evolve_step(model, z1, z2, moments, cells, sites, replicas, seed)
-    except ValueError as error:
-        _refuse(error)
+    result = evolve_step(model, z1, z2, moments, cells, sites, replicas, seed)
     data = result.as_json()
     _write(out, data)
     for name, value in data.items():

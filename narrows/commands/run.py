@@ -6,7 +6,7 @@ from typing import Annotated, Any
 import typer
 
 from lammps_inputs.deck import warnings
-from lammps_inputs.engines import DEFAULT
+from lammps_inputs.engines import default_engine
 from narrows.messages import say, user_errors, warn
 from narrows.progress import finish_with_progress
 from narrows.scene_options import ENGINES, SceneFile, SceneName, Settings, scene_of
@@ -24,7 +24,7 @@ def run(
     settings: Settings = None,
     engine: Annotated[
         str | None,
-        typer.Option(metavar=ENGINES, help=f"default: {DEFAULT}, or that of the resumed run"),
+        typer.Option(metavar=ENGINES, help="default: the first that can run the scene"),
     ] = None,
     resume: Annotated[bool, typer.Option("--resume", help="go on with the run in DIR")] = False,
     checkpoint_interval: Annotated[
@@ -37,7 +37,7 @@ def run(
             communicator(), lambda: _stored(out) if resume else ({}, None)
         )
         chosen = scene_of(scene, file, settings, stored)
-        engine = engine or engine_before or DEFAULT
+        engine = engine or engine_before or default_engine(chosen.system)
         warn(warnings(chosen, engine))
         with (
             Simulation(chosen, engine, out, resume, checkpoint_interval) as simulation,

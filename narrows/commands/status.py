@@ -6,9 +6,11 @@ from typing import Annotated
 import typer
 
 from narrows.messages import say, user_errors
+from run_files import RunDirectoryError
 from run_files.sweep_file import is_sweep
-from srd_driver import sweep_definition
+from srd_driver import RunError, sweep_definition
 from srd_driver.status import Status, status_of, stored_run
+from srd_driver.sweep import Run
 
 
 def status(
@@ -20,7 +22,7 @@ def status(
             runs = sweep_definition.read(directory).runs
         else:
             runs = (stored_run(directory),)
-        found = {run.folder.name: status_of(run) for run in runs}
+        found = {run.folder.name: _status_or_damage(run) for run in runs}
         width = max(map(len, found), default=0)
         for name, entry in found.items():
             say(f"{name:<{width}}  {_line(entry)}")
@@ -28,6 +30,14 @@ def status(
             states = [entry.state for entry in found.values()]
             counts = {state: states.count(state) for state in dict.fromkeys(states)}
             say(f"{len(runs)} runs: " + ", ".join(f"{n} {state}" for state, n in counts.items()))
+
+
+def _status_or_damage(run: Run) -> Status:
+    """A run that is damaged does not hide the others."""
+    try:
+        return status_of(run)
+    except (RunDirectoryError, RunError) as error:
+        return Status("failed", 0.0, run.scene.system.clock.end, None, str(error))
 
 
 def _line(entry: Status) -> str:

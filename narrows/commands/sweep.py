@@ -9,10 +9,10 @@ import typer
 
 from lammps_inputs import SceneError, parse_assignment
 from lammps_inputs.deck import warnings
-from lammps_inputs.engines import DEFAULT
 from narrows.messages import say, user_errors, warn
 from narrows.progress import progress_of_runs
 from narrows.scene_options import ENGINES, SceneFile, SceneName, Settings, scene_fields
+from run_files import RunDirectoryError
 from run_files.manifest import CHANGEABLE
 from srd_driver import RunError, sweep_definition
 from srd_driver.parallel import communicator
@@ -30,7 +30,7 @@ def sweep(
     ] = None,
     settings: Settings = None,
     file: SceneFile = None,
-    engine: Annotated[str, typer.Option(metavar=ENGINES, help="of all runs")] = DEFAULT,
+    engine: Annotated[str | None, typer.Option(metavar=ENGINES, help="of all runs")] = None,
     repeats: Annotated[
         int, typer.Option(metavar="R", min=1, help="runs of each point: seed, seed + 1, ...")
     ] = 1,
@@ -86,8 +86,15 @@ def _fixed(
     return scene_fields(scene, file, settings)
 
 
+def _is_done(run: Run) -> bool:
+    try:
+        return is_finished(run)
+    except RunDirectoryError:  # its command, or the table, will tell
+        return False
+
+
 def _write_commands(asked: Sweep, file: Path) -> None:
-    lines = [shlex.join(_command(run)) + "\n" for run in asked.runs if not is_finished(run)]
+    lines = [shlex.join(_command(run)) + "\n" for run in asked.runs if not _is_done(run)]
     if str(file) == "-":
         sys.stdout.writelines(lines)
         return
@@ -102,7 +109,7 @@ def _command(run: Run) -> list[str]:
     """The command line of a run, to be given again and again until it is finished."""
     default = {name: field.default for name, field in type(run.scene).model_fields.items()}
     settings = [
-        f"{name}={value}"
+        f"{name}={list(value) if isinstance(value, tuple) else value}"
         for name, value in run.scene.model_dump().items()
         if value != default[name] or name in CHANGEABLE
     ]
@@ -121,7 +128,7 @@ def _execute(asked: Sweep, jobs: int) -> None:
             failures = run_all(asked.runs, jobs, report_runs)
             table = tabulate(asked.directory, jobs, renew=False, report=report_analysis)
     except KeyboardInterrupt:
-        done = sum(is_finished(run) for run in asked.runs)
+        done = sum(_is_done(run) for run in asked.runs)
         raise KeyboardInterrupt(
             f"{done} of {len(asked.runs)} runs are finished; give the same command again to go on"
         ) from None

@@ -7,7 +7,7 @@ from matplotlib import colormaps
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
-from analysis.blocking import Estimate
+from analysis.estimate import Estimate
 
 PAPER = "#c8102e"
 COLOURS = ("#1f5fa8", "#e08a1e", "#2e8b57", "#7b4fa3", "#6b6b6b", "#17a2b8")

@@ -12,7 +12,7 @@ from decimal import Decimal
 from pathlib import Path
 from typing import Any, Literal
 
-from analysis.blocking import Estimate
+from analysis.estimate import Estimate
 from run_files.writing import replace_text
 
 SIGNIFICANT = 2.0  # standard errors

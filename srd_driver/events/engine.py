@@ -9,9 +9,10 @@ from typing import Any, Self
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
+from lammps_inputs.close_packing import close_packing, sphere_volume
 from srd_driver.events import kernel, profiles
 from srd_driver.events.errors import EventError
-from srd_driver.events.initial import lattice, sphere_volume, thermal_velocities
+from srd_driver.events.initial import thermal_velocities
 from srd_driver.events.profiles import Profile
 from srd_driver.events.state import (
     COLLISIONS,
@@ -140,7 +141,10 @@ class HardSpheres:
             raise EventError(f"temperature: {temperature:g}; it must be positive")
         box = np.asarray(lengths, dtype=float)
         axes = tuple(walls)
-        positions = lattice(count, box, axes, diameter, seed)
+        try:
+            positions = close_packing(count, box, axes, diameter, seed)
+        except ValueError as error:
+            raise EventError(str(error)) from None
         velocities = thermal_velocities(count, len(box), axes, temperature, seed)
         return cls(
             positions, velocities, box, axes, diameter=diameter, reactions=reactions, seed=seed

@@ -122,15 +122,18 @@ class ReferenceEngine:
         return mean
 
     def fluid_temperature(self) -> float:
-        """kBT of the fluid about its mean velocity in bins of half a cell along y [kBT]."""
+        """kBT of the fluid about its mean velocity in bins of half a cell along y [kBT].
+
+        0 where each particle is alone in its bin: there is no motion about the mean then.
+        """
         bins = np.floor(2 * self._fluid_positions[1]).astype(np.intp)
         occupation = np.bincount(bins)
         energy = 0.0
         for component in self._fluid_velocities:
             mean = np.bincount(bins, component) / np.maximum(occupation, 1)
             energy += float(np.sum((component - mean[bins]) ** 2))
-        free = len(self._fluid_velocities) * (len(bins) - np.count_nonzero(occupation))
-        return energy / free
+        free = len(self._fluid_velocities) * (len(bins) - int(np.count_nonzero(occupation)))
+        return energy / free if free else 0.0
 
     def energy(self) -> float:
         """Kinetic energy and the potential energy of the colloids' interactions [kBT]."""

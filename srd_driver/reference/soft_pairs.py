@@ -16,7 +16,7 @@ Indices = NDArray[np.intp]
 
 
 class Potential(Protocol):
-    """A pair potential with three derivatives, as in `lammps_inputs.soft_potentials`."""
+    """A pair potential with three derivatives, as `lammps_inputs.potentials.soft_disk` has."""
 
     @property
     def cutoff(self) -> float:

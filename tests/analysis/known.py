@@ -1,6 +1,6 @@
 """Estimates that must have a value and an error."""
 
-from analysis.blocking import Estimate
+from analysis.estimate import Estimate
 
 
 def known(estimate: Estimate) -> tuple[float, float]:

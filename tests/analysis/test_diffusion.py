@@ -60,7 +60,7 @@ def test_random_walk_with_drift() -> None:
 
 def test_pulls_of_the_diffusion_coefficient() -> None:
     random = np.random.default_rng(2)
-    pulls, alarms, repeats = [], 0, 200
+    pulls, alarms, hits, repeats = [], 0, 0, 200
     for _ in range(repeats):
         x = np.cumsum(random.normal(size=(800, 4)), axis=0)
         found = diffusion(x, random.normal(size=x.shape), 1.0)
@@ -69,10 +69,12 @@ def test_pulls_of_the_diffusion_coefficient() -> None:
         else:
             value, error = known(found.from_msd)
             pulls.append((value - 0.5) / error)
+            hits += abs(found.from_msd.deviation(0.5)) < 1.96
     # 8 segments: Student's t with 7 degrees of freedom has deviation 1.18. The drift that is
     # taken out costs at most 3 %, a third of an error
     assert abs(np.mean(pulls)) < 1 / 3 + 4.4 / math.sqrt(repeats)
     assert 0.7 < np.std(pulls) < 1.5
+    assert 0.90 < hits / len(pulls) < 0.99
     # a walk is called anomalous in about one of 40 runs; 16 of 200 has a chance below 1e-4
     assert alarms < 16
 

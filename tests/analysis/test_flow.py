@@ -5,7 +5,7 @@ import pytest
 from numpy.typing import NDArray
 from scipy.integrate import quad
 
-from analysis import blocking, flow
+from analysis import correlated_mean, flow
 from tests.analysis.known import known
 from tests.analysis.run_writer import half_cells
 
@@ -80,7 +80,7 @@ def test_pulls_of_the_maximum_are_standard_normal() -> None:
     for _ in range(repeats):
         velocity = exact + 0.05 * random.normal(size=(512, len(y)))
         v_max, _ = flow.fit_parabola(y, WIDTH, np.full_like(velocity, 50.0), velocity)
-        value, error = known(blocking.mean(v_max))
+        value, error = known(correlated_mean.mean(v_max))
         pulls.append((value - 0.1) / error)
     # false-alarm rate 1e-5 each; errors from 32 blocks: Student's t has deviation 1.03
     assert abs(np.mean(pulls)) < 4.4 / math.sqrt(repeats)

@@ -3,8 +3,8 @@
 import numpy as np
 import pytest
 
-from analysis.blocking import Estimate
-from analysis.flux import asep_form, current, fit_quality
+from analysis.estimate import Estimate
+from analysis.flux import asep_form, current
 
 SLOPE, INTERCEPT, FRAME = 5.71, 0.019, 0.12  # Fig. 5.1; any frame faster than c'
 RHO = np.linspace(0, 0.025, 11)
@@ -29,17 +29,6 @@ def test_erratum_5_3_printed_form_is_not() -> None:
 @pytest.mark.parametrize("frame", [-1.0, 0.0, 0.05, 1.0])
 def test_current_is_convex_in_every_frame(frame: float) -> None:
     assert np.all(np.diff(asep_form(SLOPE, INTERCEPT, frame).current(RHO), 2) > 0)
-
-
-def test_chi_squared_of_a_line_by_hand() -> None:
-    # one mean of 1, 3 and 5 with errors 2: deviations of one error on either side
-    y = [Estimate(value, 2.0) for value in (1.0, 3.0, 5.0)]
-    flat = fit_quality([0.0, 1.0, 2.0], y, degree=0)
-    assert (flat.coefficients[0].value, flat.chi_squared, flat.freedom) == pytest.approx((3, 2, 2))
-    line = fit_quality([0.0, 1.0, 2.0], y)
-    assert line([0.0, 4.0]) == pytest.approx([1.0, 9.0])
-    assert line.chi_squared == pytest.approx(0.0, abs=1e-20)
-    assert flat.quality == "chi^2 = 2.0 for 2 degrees of freedom"
 
 
 def test_current_scales_the_error() -> None:

@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from analysis.blocking import Estimate
+from analysis.estimate import Estimate
 from analysis.health import closest_approach, overlap_warnings, temperature_warnings
 from analysis.measures import colloid_temperature, fluid_temperature
 from run_files.manifest import Box

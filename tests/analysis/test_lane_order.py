@@ -1,12 +1,19 @@
+from typing import Any
+
 import numpy as np
 import pytest
+from numpy.typing import NDArray
 
 from analysis.lane_order import lane_order, lane_order_printed
+
+Array = NDArray[np.float64]
 
 COLOURS = np.arange(200) % 2
 
 
-def brute_force(positions, colours, lengths, axes):
+def brute_force(
+    positions: Array, colours: NDArray[Any], lengths: list[float], axes: list[int]
+) -> Array:
     """Every pair of every frame, delhommelle-2005, II."""
     frames, particles, dimension = positions.shape
     spacing = (particles / np.prod(lengths)) ** (-1 / dimension)
@@ -20,11 +27,11 @@ def brute_force(positions, colours, lengths, axes):
                     d -= np.array(lengths)[axes] * np.round(d / np.array(lengths)[axes])
                     distances.append(np.sqrt((d**2).sum()))
             alone[t] += min(distances) > spacing
-    return alone / particles
+    return np.asarray(alone / particles)
 
 
 @pytest.mark.parametrize("lengths", [[9.0, 14.0], [4.0, 6.0, 9.0]])
-def test_brute_force(lengths) -> None:
+def test_brute_force(lengths: list[float]) -> None:
     random = np.random.default_rng(0)
     positions = random.uniform(-10, 20, (3, 60, len(lengths)))
     colours = np.arange(60) < 4  # few of one colour, so that phi is neither 0 nor 1
@@ -36,7 +43,7 @@ def test_brute_force(lengths) -> None:
     assert lane_order_printed(positions, colours, lengths).tolist() == along.tolist()
 
 
-def stripes(axis, dimension=2):
+def stripes(axis: int, dimension: int = 2) -> tuple[Array, Array]:
     """200 particles at random, the colours in two halves of the box along an axis with gaps."""
     random = np.random.default_rng(1)
     lengths = np.full(dimension, 200 ** (1 / dimension))
@@ -46,7 +53,7 @@ def stripes(axis, dimension=2):
 
 
 @pytest.mark.parametrize("dimension", [2, 3])
-def test_lanes_along_the_field_and_the_erratum(dimension) -> None:
+def test_lanes_along_the_field_and_the_erratum(dimension: int) -> None:
     """Two lanes along x: the lateral distance sees them, the printed one, along x, does not."""
     positions, lengths = stripes(1, dimension)
     assert lane_order(positions, COLOURS, lengths).tolist() == [1] * 4

@@ -3,13 +3,14 @@ import pytest
 
 from analysis.configurational_temperature import configurational_temperature, ratio_of_means
 from analysis.pair_sums import pair_sums
-from lammps_inputs.soft_potentials import SoftDisk, WeeksChandlerAndersen
+from lammps_inputs.potentials.soft_disk import SoftDisk
+from lammps_inputs.potentials.weeks_chandler_andersen import WeeksChandlerAndersen
 from srd_driver.reference.soft_pairs import SoftPairs
 
 
 @pytest.mark.parametrize("potential", [SoftDisk(cutoff=1.9), WeeksChandlerAndersen()])
 @pytest.mark.parametrize("dimension", [2, 3])
-def test_brute_force(potential, dimension) -> None:
+def test_brute_force(potential: SoftDisk | WeeksChandlerAndersen, dimension: int) -> None:
     """Against the reference, which looks at every pair."""
     random = np.random.default_rng(4)
     lengths = np.array([5.0, 6.0, 4.5])[:dimension]
@@ -56,6 +57,8 @@ def test_the_error_of_a_ratio_covers_it() -> None:
         noise = random.normal(0, 2, 1000)  # of a potential that is not quite harmonic
         squares = 9 * (r**2).sum(axis=(1, 2)) + 0.7 * noise
         estimate = configurational_temperature(squares, 3 * 2 * 4 + noise)
+        assert estimate.value is not None
+        assert estimate.error is not None
         off.append((estimate.value - 0.7) / estimate.error)
     assert np.std(off) == pytest.approx(1, abs=0.2)  # 4 deviations of 1/sqrt(400)
     assert np.mean(off) == pytest.approx(0, abs=0.3)

@@ -90,7 +90,7 @@ def test_header_repeated_by_a_resumed_run_is_no_data(channel: Path) -> None:
 
 
 def test_driven_run_tells_its_own_progress(channel: Path) -> None:
-    progress = {"step": 200, "wall_seconds": 12.5, "finished": False, "checkpoint": None}
+    progress = {"step": 200, "wall_seconds": 12.5, "checkpoint": "checkpoint.200.restart"}
     (channel / "progress.json").write_text(json.dumps(progress))
     run = RunDirectory(channel)
     assert run.wall_seconds() == 12.5
@@ -147,10 +147,12 @@ def test_outputs_are_known_by_the_name_of_their_file(channel: Path) -> None:
     system = run_writer.channel(3)
     system["outputs"].append(run_writer.AVERAGES | {"file": "more.dat", "columns": ["force"]})
     write_manifest(channel, "channel", system)
-    (channel / "more.dat").write_text("# TimeStep v_force\n10 1.5\n20 2.5\n")
+    steps = range(10, 201, 10)
+    rows = "".join(f"{step} {step / 20}\n" for step in steps)
+    (channel / "more.dat").write_text(f"# TimeStep v_force\n{rows}")
     run = RunDirectory(channel)
-    assert run.table("more")["force"] == pytest.approx([1.5, 2.5])
-    assert run.table("more").steps.tolist() == [10, 20]
+    assert run.table("more")["force"] == pytest.approx([step / 20 for step in steps])
+    assert run.table("more").steps.tolist() == list(steps)
     with pytest.raises(
         RunDirectoryError, match=r"manifest\.json: no table fluid_profile among outp"
     ):

@@ -7,8 +7,8 @@ import pytest
 from scipy.sparse import coo_matrix
 from scipy.sparse.csgraph import connected_components
 
-from analysis.blocking import Estimate
 from analysis.clusters import cluster_series, labels
+from analysis.estimate import Estimate
 from analysis.normality import FALSE_ALARMS, normality
 from analysis.radial_distribution import radial_distribution
 from analysis.sedimentation import richardson_zaki, settling_speeds
@@ -36,18 +36,18 @@ def test_settling_speeds_are_those_of_their_frames() -> None:
 def test_richardson_zaki_finds_the_exponent() -> None:
     phi = np.array([0.02, 0.07, 0.14, 0.21])
     random = np.random.default_rng(2)
-    error = 0.01 * np.ones(4)
-    found = [
-        richardson_zaki(phi, 0.5 * (1 - phi) ** 3.5 + error * random.normal(size=4), error)
-        for _ in range(300)
-    ]
-    exponents = np.array([known(exponent) for _, exponent in found])
+
+    def speeds(noise: float) -> list[Estimate]:
+        exact = 0.5 * (1 - phi) ** 3.5
+        return [Estimate(float(v), 0.01) for v in exact + noise * random.normal(size=4)]
+
+    exponents = np.array([known(richardson_zaki(phi, speeds(0.01))[1]) for _ in range(300)])
     assert exponents[:, 0].mean() == pytest.approx(3.5, abs=4 * exponents[:, 0].std() / 17)
-    single, exponent = richardson_zaki(phi, 0.5 * (1 - phi) ** 3.5, error)
+    single, exponent = richardson_zaki(phi, speeds(0.0))
     assert single.value == pytest.approx(0.5)
     assert exponent.value == pytest.approx(3.5)
     with pytest.raises(ValueError, match="must be positive"):
-        richardson_zaki(phi, -phi, error)
+        richardson_zaki(phi, [Estimate(-0.1, 0.01)] * 4)
 
 
 def test_both_ways_give_d_of_persistent_walks_that_drift() -> None:

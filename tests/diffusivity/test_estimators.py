@@ -1,5 +1,8 @@
 """The three estimators on walks whose diffusivity is known, and on cases by hand."""
 
+from collections.abc import Callable
+from typing import Any
+
 import MDAnalysis
 import numpy as np
 import pytest
@@ -19,15 +22,18 @@ from analysis.diffusivity.blocks import jackknife, quantile_95
 from analysis.diffusivity.local_fit import local_derivative
 from tests.diffusivity import walks
 
+Array = walks.Array
+Make = Callable[[AlongAxis], Any]
+
 WALKERS = 100
 
 
 @pytest.fixture(scope="module")
-def path():
+def path() -> Array:
     return walks.walk(12 * WALKERS, 3000, seed=2)
 
 
-def coverage(path, make):
+def coverage(path: Array, make: Make) -> tuple[float, float]:
     """Fraction of bins, in the middle, whose 95 % bar holds the truth; and the median ratio."""
     inside, ratios = [], []
     for first in range(0, path.shape[1], WALKERS):
@@ -38,17 +44,17 @@ def coverage(path, make):
         deviation = results.diffusivity[middle] - true
         inside.append(np.abs(deviation) < quantile_95(10) * results.error[middle])
         ratios.append(results.diffusivity[middle] / true)
-    return np.mean(inside), np.median(ratios)
+    return float(np.mean(inside)), float(np.median(ratios))
 
 
-ESTIMATORS = [
+ESTIMATORS: list[Make] = [
     lambda c: ColorDiffusivity(c, 0.3, 3.7, probability=0.3, reach=0.5, bin_width=0.05),
     lambda c: FirstPassageDiffusivity(c, 0.3, 3.7, reach=0.5, bin_width=0.05),
 ]
 
 
 @pytest.mark.parametrize("make", ESTIMATORS, ids=["color", "first passage"])
-def test_error_bars_cover_the_truth(path, make) -> None:
+def test_error_bars_cover_the_truth(path: Array, make: Make) -> None:
     inside, ratio = coverage(path, make)
     assert inside > 0.88  # 12 walks of correlated bins: 0.95 +- 0.03
     assert ratio == pytest.approx(1, abs=0.07)
@@ -56,13 +62,13 @@ def test_error_bars_cover_the_truth(path, make) -> None:
 
 @pytest.mark.statistics
 @pytest.mark.parametrize("make", ESTIMATORS, ids=["color", "first passage"])
-def test_error_bars_cover_the_truth_in_95_of_100(make) -> None:
+def test_error_bars_cover_the_truth_in_95_of_100(make: Make) -> None:
     inside, ratio = coverage(walks.walk(60 * WALKERS, 3000, seed=5), make)
     assert inside == pytest.approx(0.95, abs=0.03)
     assert ratio == pytest.approx(1, abs=0.05)
 
 
-def test_bayesian_profile_and_its_lags(path) -> None:
+def test_bayesian_profile_and_its_lags(path: Array) -> None:
     """Short lags are biased by the bins' width, which diffusion must outgrow; long ones are noisy.
 
     At 0.4, where the root mean square displacement is 3.5 bins, the bars hold the truth.
@@ -79,8 +85,9 @@ def test_bayesian_profile_and_its_lags(path) -> None:
     assert abs(bias[1]) < 0.03
     assert results.errors_by_lag[2].mean() > 2 * results.errors_by_lag[1].mean()
     assert ((results.interval[0] < true) & (true < results.interval[1])).sum() >= 13  # of 15
-    # the posterior is about as wide as the curvature at its top says
-    assert results.error == pytest.approx(results.errors_by_lag[1], rel=0.4)
+    # about as wide as the curvature at its top says, but skewed next to the walls
+    inner = slice(2, -2)
+    assert results.error[inner] == pytest.approx(results.errors_by_lag[1][inner], rel=0.4)
 
 
 def test_likelihood_is_that_of_the_exponential_and_its_gradient() -> None:
@@ -122,7 +129,7 @@ def test_jackknife_of_a_mean() -> None:
     assert error == pytest.approx(np.sqrt(0.9 * ((nine - np.mean(nine, axis=0)) ** 2).sum(axis=0)))
 
 
-def steady_pairs(blocks=6):
+def steady_pairs(blocks: int = 6) -> tuple[Array, float, Array, Array, Array]:
     """Exact steady state about a particle: D(r) = 1 - 0.5/r, rho(r) = 1 + 1/r^4, J = 2."""
     width = 0.02
     r = 1 + width * np.arange(0.5, 150)
@@ -170,11 +177,11 @@ def test_pair_distances_are_those_of_nearest_images() -> None:
     assert pairs.values() == pytest.approx([1, 4.5, far, 1, 4.5, far])
 
 
-def still(walkers=5, frames=40):
+def still(walkers: int = 5, frames: int = 40) -> AlongAxis:
     return AlongAxis(walks.universe(np.full((frames, walkers), 2.0)).atoms)
 
 
-BAD = [
+BAD: list[tuple[Callable[[], Any], str]] = [
     (lambda: AlongAxis(walks.universe(np.ones((3, 2))).atoms, "r"), "axis: 'r'; it must be"),
     (lambda: ColorDiffusivity(still(), 2, 1), "low: 2; it must be below high, 1"),
     (lambda: ColorDiffusivity(still(), 1, 3, probability=0), r"probability: 0; it must be in \(0"),
@@ -191,7 +198,7 @@ BAD = [
 
 
 @pytest.mark.parametrize(("make", "message"), BAD)
-def test_bad_input_is_named(make, message) -> None:
+def test_bad_input_is_named(make: Callable[[], Any], message: str) -> None:
     with pytest.raises(DiffusivityError, match=message):
         make()
 

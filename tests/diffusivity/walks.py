@@ -1,22 +1,27 @@
 """Smoluchowski walks with known D and F, as MDAnalysis Universes."""
 
+from typing import Any
+
 import MDAnalysis
 import numpy as np
 from MDAnalysis.coordinates.memory import MemoryReader
+from numpy.typing import NDArray
+
+Array = NDArray[np.float64]
 
 LENGTH = 4.0  # reflecting ends at 0 and LENGTH
 FRAME = 0.02
 
 
-def diffusivity(z):
+def diffusivity(z: Array) -> Array:
     return 1.0 + 0.5 * np.cos(2 * np.pi * z / LENGTH)
 
 
-def free_energy(z):
+def free_energy(z: Array) -> Array:
     return 0.5 * np.sin(2 * np.pi * z / LENGTH)
 
 
-def walk(walkers, frames, seed, substeps=5):
+def walk(walkers: int, frames: int, seed: int, substeps: int = 5) -> Array:
     """z(t), (frames, walkers), in equilibrium: dz = (D' - D F') dt + sqrt(2 D dt) xi."""
     random = np.random.default_rng(seed)
     k = 2 * np.pi / LENGTH
@@ -37,7 +42,7 @@ def walk(walkers, frames, seed, substeps=5):
     return path
 
 
-def universe(path):
+def universe(path: Array) -> Any:
     """The walkers of `path` as atoms that move along z."""
     frames, walkers = path.shape
     positions = np.full((frames, walkers, 3), 5.0, dtype=np.float32)

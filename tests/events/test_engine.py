@@ -1,5 +1,8 @@
 """The event-driven engine: cases by hand, brute force, and what must hold to the last bit."""
 
+from pathlib import Path
+from typing import Any
+
 import numpy as np
 import pytest
 
@@ -7,7 +10,7 @@ from srd_driver.events import EventError, HardSpheres, PairReactions, WallReacti
 from srd_driver.events.brute_force import BruteForce
 
 
-def slit(seed=1, count=200, reactions=None):
+def slit(seed: int = 1, count: int = 200, reactions: WallReactions | None = None) -> HardSpheres:
     return HardSpheres.fluid(count, [7.0, 6.5, 5.0], walls=(2,), reactions=reactions, seed=seed)
 
 
@@ -65,7 +68,7 @@ def test_a_sphere_between_walls_is_there_and_back() -> None:
 
 @pytest.mark.parametrize("dimensions", [2, 3])
 @pytest.mark.parametrize("walls", [(), (0,), (1,), (0, 1)])
-def test_trajectory_of_brute_force(dimensions, walls) -> None:
+def test_trajectory_of_brute_force(dimensions: int, walls: tuple[int, ...]) -> None:
     lengths = [6.0, 5.0, 5.5][:dimensions]
     count = 14 if dimensions == 2 else 50
     engine = HardSpheres.fluid(count, lengths, walls, seed=3)
@@ -100,7 +103,7 @@ def test_chances_of_the_brute_force_wall_hits() -> None:
     assert engine.take_profile().reactions[:, 1] == pytest.approx(expected)
 
 
-def test_cutting_and_looking_change_no_bit(tmp_path) -> None:
+def test_cutting_and_looking_change_no_bit(tmp_path: Path) -> None:
     whole, cut = slit(reactions=WallReactions([0.3])), slit(reactions=WallReactions([0.3]))
     whole.advance_to(5.0)
     for time in (0.013, 1.0, 1.7, 4.2):
@@ -116,7 +119,7 @@ def test_cutting_and_looking_change_no_bit(tmp_path) -> None:
     assert whole.collisions == cut.collisions > 1000
 
 
-def test_loading_gives_the_bits_of_not_stopping(tmp_path) -> None:
+def test_loading_gives_the_bits_of_not_stopping(tmp_path: Path) -> None:
     reactions = PairReactions([0.2, 0.7], centers=[0, 5], cutoff=2.6)
     engine = HardSpheres.fluid(120, [6, 6, 6], reactions=reactions, seed=2)
     engine.advance(1.0)
@@ -161,7 +164,7 @@ def test_chance_is_the_mean_label_over_lots() -> None:
         (PairReactions([0.1, 0.5], centers=[3, 8], cutoff=2.7), [6, 6, 6], ()),
     ):
         start = HardSpheres.fluid(90, box, walls, seed=1)
-        total, chances = 0.0, []
+        total, chances = np.zeros((1, 1, 1)), []
         for seed in range(400):
             engine = HardSpheres(
                 start.positions, start.velocities, box, walls, reactions=reactions, seed=seed
@@ -201,7 +204,7 @@ def test_pairs_enter_the_cutoff_when_a_fine_clock_says_so() -> None:
     assert hits[1] >= entered
 
 
-BAD = [
+BAD: list[tuple[dict[str, Any], str]] = [
     ({"lengths": [10.0]}, "lengths: 1 of them; a box has 2 or 3"),
     ({"lengths": [10.0, 10.0, 2.9]}, r"lengths\[2\]: 2.9; a periodic axis must have at least"),
     ({"walls": (2,), "lengths": [10, 10, 1.0]}, "between walls it must exceed the diameter, 1"),
@@ -222,8 +225,11 @@ BAD = [
 
 
 @pytest.mark.parametrize(("changes", "message"), BAD)
-def test_bad_systems_are_refused(changes, message) -> None:
-    system = {"positions": [[5.0, 5.0, 5.0]], "lengths": [10.0, 10.0, 10.0]} | changes
+def test_bad_systems_are_refused(changes: dict[str, Any], message: str) -> None:
+    system: dict[str, Any] = {
+        "positions": [[5.0, 5.0, 5.0]],
+        "lengths": [10.0, 10.0, 10.0],
+    } | changes
     system.setdefault("velocities", np.ones_like(system["positions"], dtype=float))
     with pytest.raises(EventError, match=message):
         HardSpheres(**system)
@@ -240,7 +246,7 @@ def test_what_does_not_fit_is_refused() -> None:
 
 @pytest.mark.parametrize("packing", [0.05, 0.35, 0.45])
 @pytest.mark.parametrize("walls", [(), (2,), (0, 2)])
-def test_initial_states_fit(packing, walls) -> None:
+def test_initial_states_fit(packing: float, walls: tuple[int, ...]) -> None:
     lengths = np.array([12.3, 11.1, 9.7])
     count = int(packing * lengths.prod() / (np.pi / 6))
     engine = HardSpheres.fluid(count, lengths, walls, seed=5)

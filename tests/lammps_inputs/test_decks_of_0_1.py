@@ -12,6 +12,7 @@ import pytest
 from lammps_inputs import make_scene
 from lammps_inputs.deck import script, write_deck
 from lammps_inputs.engines.engine import Start
+from lammps_inputs.scenes.channel import Channel
 
 DECKS = json.loads((Path(__file__).parent / "decks_of_0_1.json").read_text())["decks"]
 READ = {"in.lammps", "scene.toml", "manifest.json"}  # not among the files that the script reads
@@ -64,7 +65,7 @@ def _with_lists_at_collisions(lines: list[str], case: dict[str, Any]) -> list[st
         f"neigh_modify delay 0 every {every} check no",
     ]
     if case["scene"] == "channel":
-        scene: Any = make_scene("channel", **case["fields"])
+        scene = Channel.make(**case["fields"])
         mass = math.pi * scene.colloid_radius**2 * scene.density
         skin = max(0.5, 2 * scene.collision_time * (1 + 10 / math.sqrt(mass)))
         lines = [line.replace("neighbor 0.5 bin", f"neighbor {skin:.6g} bin") for line in lines]

@@ -1,5 +1,7 @@
 """The page that lists the fields says what the code says."""
 
+from typing import Any
+
 from lammps_inputs import all_scenes
 from tests.conftest import ROOT
 
@@ -11,6 +13,12 @@ def test_scene_page_lists_every_field_with_its_default_and_meaning() -> None:
     assert documented.keys() == all_scenes().keys()
     for name, scene in all_scenes().items():
         for field, info in scene.model_fields.items():
-            default = "none" if info.default is None else info.default
-            shown = default if isinstance(default, str) else f"{default:g}"
-            assert f"| `{field}` | {shown} | {info.description} |" in documented[name]
+            assert f"| `{field}` | {shown(info.default)} | {info.description} |" in documented[name]
+
+
+def shown(default: Any) -> str:
+    if default is None:
+        return "none"
+    if isinstance(default, tuple):
+        return ", ".join(map(shown, default))
+    return default if isinstance(default, str) else f"{default:g}"

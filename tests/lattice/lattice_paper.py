@@ -3,13 +3,14 @@
 Everything here is written from the text, not from `lattice`: tests compare the two.
 """
 
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
+from typing import Literal
 
 import numpy as np
 from numpy.typing import NDArray
 
 from lattice.completion import complete_shock
-from lattice.models import LatticeGas, charge_gas, internal_state_gas
+from lattice.models import TRANSITIONS, LatticeGas, charge_gas, internal_state_gas
 
 Array = NDArray[np.float64]
 
@@ -298,3 +299,18 @@ def present(end: Array | None) -> Array:
 def size_of(vector: Array) -> float:
     """1-norm: total probability per unit of time that a residual moves."""
     return float(np.abs(vector).sum())
+
+
+def boundary_rates(gas: LatticeGas, side: Literal["left", "right"]) -> tuple[float, ...]:
+    """(alpha1, alpha2, alpha3, gamma1, gamma2, gamma3), or delta and beta on the right."""
+    matrix = gas.left if side == "left" else gas.right
+    assert matrix is not None
+    moves = [move for move in TRANSITIONS.values() if max(move) < gas.size]
+    forward = [float(matrix[final, initial]) for final, initial in moves]
+    return (*forward, *(float(matrix[initial, final]) for final, initial in moves))
+
+
+def reflected(gas: LatticeGas) -> LatticeGas:
+    """The same process seen in a mirror: left and right exchanged."""
+    order = np.arange(gas.size**2).reshape(gas.size, gas.size).T.ravel()
+    return replace(gas, bulk=gas.bulk[np.ix_(order, order)], left=gas.right, right=gas.left)

@@ -30,6 +30,7 @@ from lattice.shocks import (
 from tests.lattice.lattice_paper import (
     Case,
     present,
+    reflected,
     shock_charge,
     shock_internal,
     stationary_charge,
@@ -123,7 +124,7 @@ def test_pt_rates_and_24_rates_define_the_same_model() -> None:
 
 def test_reflection_reverses_the_current() -> None:
     case = shock_charge("two-sided")
-    mirror = case.gas.reflected()
+    mirror = reflected(case.gas)
     assert mirror.current(0.8) == pytest.approx(-case.gas.current(0.8), abs=1e-15)
     back = random_walk_residuals(mirror, 4, case.z2, case.z1)
     assert back.max() < 1e-13

@@ -48,7 +48,7 @@ def test_settings_win_over_the_file(tmp_path: Path, command: Run) -> None:
 @pytest.mark.parametrize(
     ("arguments", "message"),
     [
-        (["chanel"], "scene = 'chanel': must be one of bulk, channel"),
+        (["chanel"], "scene = 'chanel': must be one of bulk, "),
         (["channel", "--set", "length=40.5"], "length = 40.5: a periodic length must be"),
         (["channel", "--set", "length"], "'length': must have the form field=value"),
         (["channel", "--scene", "none.toml"], "none.toml: "),

@@ -7,7 +7,8 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from lammps_inputs.soft_potentials import SoftDisk, WeeksChandlerAndersen
+from lammps_inputs.potentials.soft_disk import SoftDisk
+from lammps_inputs.potentials.weeks_chandler_andersen import WeeksChandlerAndersen
 from srd_driver.reference.soft_pairs import SoftPairs
 from tests.conftest import Run
 
@@ -59,7 +60,8 @@ def mixture(dimension: int, temperature: float = 1.0) -> Mixture:
     if dimension == 2:
         potential: SoftDisk | WeeksChandlerAndersen = SoftDisk()
         cell = np.array([1.0, np.sqrt(3)]) * np.sqrt(2 / np.sqrt(3) / 0.92)
-        basis, counts = np.array([[0, 0], [0.5, 0.5]]), (10, 6)
+        basis = np.array([[0, 0], [0.5, 0.5]])
+        counts: tuple[int, ...] = (10, 6)
     else:
         potential = WeeksChandlerAndersen()
         cell = np.full(3, (4 / 0.84) ** (1 / 3))
@@ -113,6 +115,14 @@ def write_data(start: Mixture, file: Path, rate: float = 0.0) -> None:
     file.write_text("\n".join(lines))
 
 
+def pair_lines(potential: SoftDisk | WeeksChandlerAndersen) -> str:
+    """The pair style of all types."""
+    return (
+        f"pair_style {potential.pair_style}{potential.pair_arguments(potential.cutoff, '')}\n"
+        f"pair_modify {potential.pair_modify}\n{potential.pair_coeff('* *')}"
+    )
+
+
 def deck(start: Mixture, thermostat: str, rate: float = 0.0, dt: float = 0.001) -> str:
     """The deck up to its `run`, reading `start.data`."""
     shear = f"fix shear all deform 1 xy erate {rate} remap v units box" if rate else ""
@@ -123,8 +133,7 @@ boundary p p p
 newton on
 atom_modify sort 0 0 map array
 read_data start.data
-{start.potential.pair_style()}
-{start.potential.pair_coeff("* *")}
+{pair_lines(start.potential)}
 neighbor 0.3 bin
 neigh_modify delay 0 every 1 check yes
 timestep {dt}

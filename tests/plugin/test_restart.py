@@ -10,6 +10,7 @@ import numpy as np
 import pytest
 
 from lammps_inputs import make_scene
+from lammps_inputs.deck import script
 from lammps_inputs.engines.engine import Start
 from tests.conftest import Run
 from tests.plugin.fluid import State, largest_difference, run_mpc
@@ -77,3 +78,25 @@ def test_a_fault_leaves_the_last_checkpoint_intact(
     again = run_mpc(scene, 12, tmp_path, command, start=Start(120, "checkpoint.120.restart"))
     for one, other in zip(vars(again).values(), vars(whole).values(), strict=True):
         np.testing.assert_array_equal(one, other)
+
+
+@pytest.mark.parametrize(
+    ("seed", "offset", "complaint"),
+    [("2", None, "restart: of the seed 1, not 2"), ("1", -2000, "restart: damaged")],
+)
+def test_a_restart_of_another_seed_or_damaged_is_refused(
+    seed: str, offset: int | None, complaint: str, tmp_path: Path, command: Run
+) -> None:
+    of = make_scene("poiseuille", length=8, width=8)
+    run_mpc(of, 10, tmp_path, command, end="write_restart half.restart\n")
+    if offset:
+        file = tmp_path / "half.restart"
+        content = bytearray(file.read_bytes())
+        content[offset] ^= 1
+        file.write_bytes(content)
+    deck = script(of, "mpc", Start(10, "half.restart"))
+    (tmp_path / "in.lammps").write_text(deck)
+    words = ("lmp", "-in", "in.lammps", "-var", "seed", seed, "-var", "steps", "20")
+    done = command(*words, cwd=tmp_path, succeed=False)
+    assert done.returncode != 0
+    assert complaint in done.stdout + done.stderr

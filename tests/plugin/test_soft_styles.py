@@ -8,7 +8,8 @@ from typing import Any
 import numpy as np
 import pytest
 
-from lammps_inputs.soft_potentials import SoftDisk, WeeksChandlerAndersen
+from lammps_inputs.potentials.soft_disk import SoftDisk
+from lammps_inputs.potentials.weeks_chandler_andersen import WeeksChandlerAndersen
 from srd_driver.parallel import communicator
 from tests.conftest import ROOT, Run
 from tests.plugin.lanes import (
@@ -16,6 +17,7 @@ from tests.plugin.lanes import (
     Mixture,
     deck,
     mixture,
+    pair_lines,
     periodic_difference,
     read_state,
     write_data,
@@ -71,7 +73,7 @@ def lammps(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Iterator[Commands
 def test_a_pair_is_the_numpy_definition(potential: Any, distance: float, lammps: Commands) -> None:
     instance = lammps(
         f"{PAIR}\ncreate_atoms 1 single 11.5 3 0\ncreate_atoms 2 single {distance - 0.5} 3 0\n"
-        f"{potential.pair_style()}\n{potential.pair_coeff('* *')}\n"
+        f"{pair_lines(potential)}\n"
         "compute configurations all temp/configurational\n"
         "thermo_style custom step pe pxx c_configurations c_configurations[1] c_configurations[2]\n"
         "thermo_modify norm no\nrun 0"

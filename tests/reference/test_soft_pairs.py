@@ -1,9 +1,12 @@
 """Pair sums against finite differences of the energy, and against results by hand."""
 
+from collections.abc import Callable
+
 import numpy as np
 import pytest
 
-from lammps_inputs.soft_potentials import SoftDisk, WeeksChandlerAndersen
+from lammps_inputs.potentials.soft_disk import SoftDisk
+from lammps_inputs.potentials.weeks_chandler_andersen import WeeksChandlerAndersen
 from srd_driver.reference.soft_pairs import SoftPairs
 
 POTENTIALS = [SoftDisk(sigma=1.1, epsilon=0.8), WeeksChandlerAndersen(sigma=1.2, epsilon=1.3)]
@@ -23,7 +26,9 @@ def fluid(dimension: int, count: int = 40) -> np.ndarray:
     return np.array(points) + lengths * random.integers(-1, 2, (len(points), 1))
 
 
-def derivative(function, positions: np.ndarray, step: float = 1e-5) -> np.ndarray:
+def derivative(
+    function: Callable[[np.ndarray], float], positions: np.ndarray, step: float = 1e-5
+) -> np.ndarray:
     """By central differences, (N, D)."""
     slope = np.zeros_like(positions)
     for index in np.ndindex(positions.shape):
@@ -37,7 +42,9 @@ def derivative(function, positions: np.ndarray, step: float = 1e-5) -> np.ndarra
 @pytest.mark.parametrize("potential", POTENTIALS, ids=lambda p: type(p).__name__)
 @pytest.mark.parametrize("dimension", [2, 3])
 @pytest.mark.parametrize("offset", [0.0, 1.7])
-def test_gradients_are_finite_differences(potential, dimension, offset) -> None:
+def test_gradients_are_finite_differences(
+    potential: SoftDisk | WeeksChandlerAndersen, dimension: int, offset: float
+) -> None:
     pairs = SoftPairs(potential, LENGTHS[dimension])
     x = fluid(dimension)
     sums = pairs.sums(x, offset)
@@ -49,7 +56,7 @@ def test_gradients_are_finite_differences(potential, dimension, offset) -> None:
         shift = np.zeros_like(x)
         shift[index] = 1e-5
         difference = pairs.sums(x - shift, offset).forces - pairs.sums(x + shift, offset).forces
-        divergence += difference[index] / 2e-5
+        divergence += float(difference[index]) / 2e-5
     assert sums.laplacian == pytest.approx(divergence, rel=1e-6)
     gradient = derivative(lambda y: pairs.sums(y, offset).laplacian, x)
     assert sums.laplacian_gradient == pytest.approx(gradient, abs=1e-6 * np.abs(gradient).max())

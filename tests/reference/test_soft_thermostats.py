@@ -1,5 +1,8 @@
 """The thermostats of lane formation: constraint, reversibility, order of the error."""
 
+from collections.abc import Callable
+from typing import Any
+
 import numpy as np
 import pytest
 
@@ -17,7 +20,9 @@ def squares(run: Isokinetic) -> float:
 
 
 @pytest.mark.parametrize(("held", "rate"), [((0, 1), 0.0), ((0,), 0.0), ((1,), 0.0), ((0, 1), 2.0)])
-def test_the_kinetic_energy_of_what_is_held_is_constant_to_rounding(held, rate) -> None:
+def test_the_kinetic_energy_of_what_is_held_is_constant_to_rounding(
+    held: tuple[int, ...], rate: float
+) -> None:
     run = Isokinetic(*STATE, held, rate)
     for _ in range(200):
         run.step(0.002)
@@ -26,7 +31,7 @@ def test_the_kinetic_energy_of_what_is_held_is_constant_to_rounding(held, rate) 
 
 
 @pytest.mark.parametrize("held", [(0, 1), (1,)])
-def test_the_isokinetic_step_is_reversible(held) -> None:
+def test_the_isokinetic_step_is_reversible(held: tuple[int, ...]) -> None:
     run = Isokinetic(*STATE, held)
     run.step(1e-9)  # onto the constraint
     positions, velocities = run.positions.copy(), run.velocities.copy()
@@ -111,13 +116,13 @@ class Isothermal:
 
 @pytest.mark.parametrize("kind", ["kinetic", "configurational"])
 @pytest.mark.parametrize("rate", [0.0, 1.5])
-def test_splitting_and_gear_converge_to_one_trajectory(kind, rate) -> None:
+def test_splitting_and_gear_converge_to_one_trajectory(kind: str, rate: float) -> None:
     """The splitting with the square of the step, Gear's method faster; both to the same end."""
     equations = Isothermal(kind, rate)
     time = 0.032
     exact = np.concatenate(equations.gear(0.000125, time), axis=None)
 
-    def error(method, dt: float) -> float:
+    def error(method: Callable[..., Any], dt: float) -> float:
         return float(np.abs(np.concatenate(method(dt, time), axis=None) - exact).max())
 
     assert 3.3 < error(equations.split, 0.0005) / error(equations.split, 0.00025) < 4.7

@@ -6,7 +6,7 @@ from pathlib import Path
 import pytest
 
 from run_files import RunDirectoryError
-from run_files.reading import Part, checked, read_json, read_text, read_toml, refuse
+from run_files.reading import Part, checked, read_json, read_json_list, read_text, read_toml, refuse
 from run_files.writing import draft_of, replace_text
 
 
@@ -38,6 +38,15 @@ def test_what_is_no_json(content: bytes, reason: str, tmp_path: Path) -> None:
     path = tmp_path / "manifest.json"
     path.write_bytes(content)
     assert refused(lambda: read_json(path), path).startswith(reason)
+
+
+@pytest.mark.parametrize("content", ["{}", "[1]", '[{}, "a"]', "null"])
+def test_a_list_holds_objects(content: str, tmp_path: Path) -> None:
+    path = tmp_path / "results.json"
+    path.write_text(content)
+    assert refused(lambda: read_json_list(path), path) == "not a JSON list of objects"
+    path.write_text('[{"a": 1}, {}]')
+    assert read_json_list(path) == [{"a": 1}, {}]
 
 
 def test_what_is_missing_no_file_or_too_large(tmp_path: Path) -> None:

@@ -51,7 +51,7 @@ def test_deck_driver_and_resumed_run_are_the_same(
     assert summary["finished"]
     expected = {"settling_speed", "diffusion", "clusters", "rotational_temperature"}
     assert expected | {"temperature", "colloid_temperature"} <= summary.keys()
-    assert ("shear" in summary) == ("shear_rate" in fields)
+    assert ("shear_flow" in summary) == ("shear_rate" in fields)
     assert summary["settling_speed"].keys() == {
         *("zero_momentum", "relative_to_fluid", "zero_volume_flux"),
     }

@@ -7,12 +7,16 @@ from pathlib import Path
 from typing import Any
 
 import pytest
+from typer.testing import CliRunner
 
 import lammps_plugin
 from analysis import RunDirectory, analyze
 from lammps_inputs import Scene, make_scene
+from narrows.cli import app
 from run_files import RunDirectoryError
-from srd_driver import Simulation
+from srd_driver import Simulation, sweep_definition
+from srd_driver.status import status_of, stored_run
+from srd_driver.sweep import run_all
 
 needs_plugin = pytest.mark.skipif(not lammps_plugin.folder(), reason="the plugin is not built")
 ENGINES = ["srd", pytest.param("mpc", marks=needs_plugin), "reference"]
@@ -132,7 +136,7 @@ def test_a_finished_run_of_which_an_end_is_missing_is_not_analysed(
         (["fields", "width"], -1.0, "width = -1.0, but 10.0 in scene.toml"),
         (["scene"], "nonesuch", "scene = 'nonesuch', but 'channel' in scene.toml"),
         (["system", "drives", 0, "target"], "others", "others: no such species"),
-        (["system", "clock", "total_steps"], 600, "the run is at step 1200 of 600"),
+        (["system", "clock", "total_steps"], 600, "ends at step 1200; the run is at step 600"),
         (["system", "clock", "total_steps"], HUGE, "manifest.json: "),
         (["system", "measures"], ["nonesuch"], "measure nonesuch"),
         (["system", "outputs", 0, "file"], "../victim", "outputs.0.file"),
@@ -145,6 +149,7 @@ def test_a_manifest_that_contradicts_its_directory_is_refused(
     shutil.copytree(finished, directory)
     file = directory / "manifest.json"
     content = json.loads(file.read_text())
+    del content["digest"]
     entry = content
     for key in path[:-1]:
         entry = entry[key]
@@ -162,9 +167,53 @@ def test_a_run_of_narrows_0_1_goes_on(tmp_path: Path) -> None:
     directory = half_way(tmp_path / "run", "reference")
     file = directory / "progress.json"
     content = json.loads(file.read_text())
-    for new in ("format", "run", "checksums"):
+    for new in ("format", "run", "checksums", "digest"):
         del content[new]
     file.write_text(json.dumps(content))
     with Simulation(scene(), "reference", directory, resume=True) as run:
         run.finish()
     assert RunDirectory(directory).finished()
+
+
+def test_the_status_of_a_deck_is_that_of_its_outputs(finished: Path, tmp_path: Path) -> None:
+    directory = tmp_path / "run"
+    shutil.copytree(finished, directory)
+    (directory / "progress.json").unlink()
+    (directory / ".lock").unlink()  # as lmp leaves it
+    assert status_of(stored_run(directory)).state == "finished"
+    for name in OUTPUTS[1:]:
+        file = directory / name
+        file.write_text(cut_rows(file.read_text(), 1 if name == "observables.dat" else 21))
+    found = status_of(stored_run(directory))
+    assert found.state == "by hand"
+    assert found.time == pytest.approx(1.05)
+    for name in OUTPUTS:
+        (directory / name).unlink()
+    assert status_of(stored_run(directory)).state == "waiting"
+
+
+def test_a_damaged_run_hides_no_other(tmp_path: Path) -> None:
+    plan = sweep_definition.plan(
+        tmp_path / "s", "channel", scene().model_dump() | {"duration": 0.3}, {}, 3, "reference"
+    )
+    sweep_definition.store(plan)
+    assert run_all(plan.runs[:1], 1) == []
+    (plan.runs[0].folder / "progress.json").write_bytes(b"\xff")
+    sweep_definition.store(plan)
+    failures = run_all(plan.runs, 2)
+    assert [failure.run for failure in failures] == [plan.runs[0]]
+    assert "progress.json" in failures[0].message
+    told = CliRunner().invoke(app, ["status", str(tmp_path / "s")]).stdout.splitlines()
+    assert [line.split()[1] for line in told[:3]] == ["failed", "finished", "finished"]
+
+
+@pytest.mark.parametrize("thermostat", ["rescale", "none", "layer"])
+def test_a_fluid_without_motion_about_its_mean_has_no_temperature(
+    thermostat: str, tmp_path: Path
+) -> None:
+    """Four particles, often each alone in its bin: the table must hold numbers."""
+    few = {"length": 2, "width": 2, "density": 1, "thermostat": thermostat, "duration": 50.0}
+    with Simulation(make_scene("bulk", **few), "reference", tmp_path) as run:
+        run.finish()
+    assert "nan" not in (tmp_path / "observables.dat").read_text()
+    RunDirectory(tmp_path).table()

@@ -1,6 +1,7 @@
 """Run directories and sweeps that somebody else wrote, or that lost a file."""
 
 import json
+import os
 import shutil
 from pathlib import Path
 from typing import Any
@@ -37,7 +38,8 @@ def half_way(tmp_path: Path) -> Path:
 
 
 def change(file: Path, **entries: Any) -> None:
-    file.write_text(json.dumps(json.loads(file.read_text()) | entries))
+    content = json.loads(file.read_text()) | entries
+    file.write_text(json.dumps({key: content[key] for key in content if key != "digest"}))
 
 
 def contents(directory: Path) -> dict[str, bytes]:
@@ -90,6 +92,7 @@ def test_runs_of_a_sweep_are_folders_of_it(name: str, tmp_path: Path) -> None:
     sweep_definition.store(sweep_definition.plan(tmp_path / "s", "channel", SHORT, {}, 1, "srd"))
     definition = tmp_path / "s" / "sweep.json"
     definition.write_text(definition.read_text().replace('"seed=1"', json.dumps(name)))
+    change(definition)
     before = sorted(tmp_path.rglob("*"))
     for read in (sweep_definition.read, lambda directory: tabulate(directory, 1)):
         with pytest.raises(RunDirectoryError, match="not the name of a folder") as error:
@@ -195,7 +198,7 @@ def test_a_kill_while_the_directory_is_made_costs_nothing(
 ) -> None:
     """After every so many files that took their places."""
     left = iter(range(renames))
-    replace = resume.os.replace
+    replace = os.replace
 
     def cut_short(source: Path, target: Path) -> None:
         if next(left, None) is None:

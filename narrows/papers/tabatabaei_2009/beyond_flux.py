@@ -11,9 +11,10 @@ from functools import cache
 import numpy as np
 from matplotlib.figure import Figure
 
-from analysis import blocking
-from analysis.blocking import Estimate
-from analysis.flux import PolynomialFit, asep_form, current, fit_quality
+from analysis import correlated_mean
+from analysis.estimate import Estimate
+from analysis.flux import asep_form, current
+from analysis.line_fit import PolynomialFit, fit_polynomial
 from analysis.settling import settling_series
 from lammps_inputs import Scene
 from lammps_inputs.scenes.poiseuille import Poiseuille
@@ -21,7 +22,7 @@ from narrows.papers.drawing import paper_line, points
 from narrows.papers.figure import Column, Directories, Outcome, PaperFigure, Quality
 from narrows.papers.results import Result, claimed, compared, measured
 from narrows.papers.tabatabaei_2009.many_colloids import REST_INTERCEPT, REST_SLOPE
-from narrows.papers.tabatabaei_2009.state_points import Point, difference, point, scenes_of
+from narrows.papers.tabatabaei_2009.state_points import Point, channel_point, scenes_of
 
 NUMBER = "beyond-flux"
 EARLY, LATE = (12.0, 300.0), (600.0, 1100.0)  # after the release [t0]
@@ -33,16 +34,18 @@ FRAME = 0.12  # V of the ASEP form that is drawn [a0/t0]
 def short_channels(quality: Quality) -> tuple[Point, ...]:
     """100 x 10 from one colloid to 25, which touch."""
     if quality == "quick":
-        return tuple(point(100, number, 2, 200.0) for number in (4, 10, 16, 22, 25))
-    return tuple(point(100, number, 2) for number in (1, 2, 4, 7, 10, 13, 16, 18, 20, 22, 24, 25))
+        return tuple(channel_point(100, number, 2, 200.0) for number in (4, 10, 16, 22, 25))
+    return tuple(
+        channel_point(100, number, 2) for number in (1, 2, 4, 7, 10, 13, 16, 18, 20, 22, 24, 25)
+    )
 
 
 @cache
 def long_channels(quality: Quality) -> tuple[Point, ...]:
     """600 x 10 at densities of the short ones."""
     if quality == "quick":
-        return tuple(point(600, number, 1, 200.0) for number in (60, 96))
-    return tuple(point(600, number, 1, 500.0) for number in (24, 60, 96, 120, 144))
+        return tuple(channel_point(600, number, 1, 200.0) for number in (60, 96))
+    return tuple(channel_point(600, number, 1, 500.0) for number in (24, 60, 96, 120, 144))
 
 
 @cache
@@ -73,7 +76,7 @@ class Homogeneous:
         frame: velocity of the co-moving frame, that of all mass together [a0/t0].
     """
 
-    where: Point
+    point: Point
     rest: Estimate
     co_moving: Estimate
     frame: Estimate
@@ -81,19 +84,18 @@ class Homogeneous:
     @property
     def coupling(self) -> Estimate:
         """Volume flux per width and force per area X = frame / (rho F), as masses match volumes."""
-        scene = self.where.scenes[0]
-        return self.frame.scaled(1 / (self.where.density * scene.colloid_mass * scene.gravity))
+        scene = self.point.scenes[0]
+        return self.frame.scaled(1 / (self.point.density * scene.colloid_mass * scene.gravity))
 
 
-def homogeneous(directories: Directories, where: Point, window: tuple[float, float]) -> Homogeneous:
-    """Means over time and seeds; errors from blocks of all seeds one after the other."""
-    runs = [settling_series(directories[scene]) for scene in where.scenes]
+def homogeneous(directories: Directories, point: Point, window: tuple[float, float]) -> Homogeneous:
+    """Means over time and seeds; errors of all runs together."""
+    runs = [settling_series(directories[scene]) for scene in point.scenes]
     used = [(run.times > window[0]) & (run.times <= window[1]) for run in runs]
-    rest = np.concatenate([run.rest[part] for run, part in zip(runs, used, strict=True)])
-    moving = np.concatenate([run.co_moving[part] for run, part in zip(runs, used, strict=True)])
-    return Homogeneous(
-        where, blocking.mean(rest), blocking.mean(moving), blocking.mean(rest - moving)
-    )
+    rest = [run.rest[part] for run, part in zip(runs, used, strict=True)]
+    moving = [run.co_moving[part] for run, part in zip(runs, used, strict=True)]
+    frame = [a - b for a, b in zip(rest, moving, strict=True)]
+    return Homogeneous(point, *(correlated_mean.mean(series) for series in (rest, moving, frame)))
 
 
 @dataclass(frozen=True)
@@ -124,10 +126,10 @@ class Law:
 
     @property
     def constants(self) -> Constants:
-        """The best ones."""
-        intercept, slope = (_number(one) for one in self.speed.coefficients)
-        coupling = _number(self.coupling.coefficients[0])
-        return Constants(intercept, slope, coupling, _number(self.permeability))
+        """Those of the fits."""
+        intercept, slope = (entry.number for entry in self.speed.coefficients)
+        coupling = self.coupling.coefficients[0].number
+        return Constants(intercept, slope, coupling, self.permeability.number)
 
     def replica(self, rng: np.random.Generator) -> Constants:
         """Those of another measurement as good as this one."""
@@ -135,38 +137,33 @@ class Law:
         errors = np.array(self.speed_errors)
         drawn = self.speed(self.densities) + scatter * errors * rng.normal(size=len(errors))
         again = [Estimate(float(v), float(e)) for v, e in zip(drawn, errors, strict=True)]
-        intercept, slope = fit_quality(self.densities, again).coefficients
+        intercept, slope = fit_polynomial(self.densities, again).coefficients
         coupling, permeability = (
-            _number(one) + rng.normal() * (one.error or 0.0)
-            for one in (self.coupling.coefficients[0], self.permeability)
+            entry.number + rng.normal() * (entry.error or 0.0)
+            for entry in (self.coupling.coefficients[0], self.permeability)
         )
-        return Constants(_number(intercept), _number(slope), coupling, permeability)
-
-
-def _number(estimate: Estimate) -> float:
-    assert estimate.value is not None
-    return estimate.value
+        return Constants(intercept.number, slope.number, coupling, permeability)
 
 
 def homogeneous_law(directories: Directories, quality: Quality) -> Law:
     """Fits through the short channels in the early window."""
-    found = [homogeneous(directories, where, EARLY) for where in short_channels(quality)]
-    densities = _densities(found)
+    entries = [homogeneous(directories, point, EARLY) for point in short_channels(quality)]
+    densities = _densities(entries)
     fluid = pure_fluid(quality)
     run = directories[fluid]
     table = run.table()
     flow = table["mean_velocity_x"][run.sampled(table.steps)]
     return Law(
         tuple(densities),
-        fit_quality(densities, [one.rest for one in found]),
-        tuple(one.rest.error or 0.0 for one in found),
-        fit_quality(densities, [one.coupling for one in found], degree=0),
-        blocking.mean(flow).scaled(1 / (fluid.density * fluid.gravity)),
+        fit_polynomial(densities, [entry.rest for entry in entries]),
+        tuple(entry.rest.error or 0.0 for entry in entries),
+        fit_polynomial(densities, [entry.coupling for entry in entries], degree=0),
+        correlated_mean.mean(flow).scaled(1 / (fluid.density * fluid.gravity)),
     )
 
 
-def _densities(found: Sequence[Homogeneous]) -> list[float]:
-    return [one.where.density for one in found]
+def _densities(entries: Sequence[Homogeneous]) -> list[float]:
+    return [entry.point.density for entry in entries]
 
 
 def _draw(
@@ -180,14 +177,14 @@ def _draw(
     fine = np.linspace(0, 0.0265, 100)
     series = [(early, 0, "100 x 10, file on the mid-line"), (long, 1, "600 x 10, the same")]
     series += [(late, 2, "100 x 10, late: zigzag")] if late else []
-    for found, number, label in series:
-        x = _densities(found)
+    for entries, number, label in series:
+        x = _densities(entries)
         hollow = {"markerfacecolor": "white"} if number == 2 else {}
-        points(speeds, x, [one.rest for one in found], number, label=label, **hollow)
-        points(speeds, x, [one.co_moving for one in found], number, alpha=0.55, **hollow)
-        flow = [current(one.where.density, one.rest) for one in found]
+        points(speeds, x, [entry.rest for entry in entries], number, label=label, **hollow)
+        points(speeds, x, [entry.co_moving for entry in entries], number, alpha=0.55, **hollow)
+        flow = [current(entry.point.density, entry.rest) for entry in entries]
         points(currents, x, flow, number, label=label, **hollow)
-        flow = [current(one.where.density, one.co_moving) for one in found]
+        flow = [current(entry.point.density, entry.co_moving) for entry in entries]
         points(currents, x, flow, number, alpha=0.55, **hollow)
     speeds.plot(fine, line(fine), label="line through the blue points, at rest")
     currents.plot(fine, fine * line(fine))
@@ -214,28 +211,28 @@ def _draw(
 def _table(
     windows: Sequence[tuple[tuple[float, float], Sequence[Homogeneous]]],
 ) -> dict[str, Column]:
-    rows = [(window, one) for window, found in windows for one in found]
+    rows = [(window, entry) for window, entries in windows for entry in entries]
     table: dict[str, Column] = {
         "from_t0": [window[0] for window, _ in rows],
         "to_t0": [window[1] for window, _ in rows],
-        "length_a0": [one.where.length for _, one in rows],
-        "colloids": [one.where.colloids for _, one in rows],
-        "seeds": [len(one.where.scenes) for _, one in rows],
-        "density_per_a0^2": [one.where.density for _, one in rows],
+        "length_a0": [entry.point.length for _, entry in rows],
+        "colloids": [entry.point.colloids for _, entry in rows],
+        "seeds": [len(entry.point.scenes) for _, entry in rows],
+        "density_per_a0^2": [entry.point.density for _, entry in rows],
     }
     for name in ("rest", "co_moving", "frame", "coupling"):
-        found: list[Estimate] = [getattr(one, name) for _, one in rows]
-        table[name] = [one.value for one in found]
-        table[f"{name}_error"] = [one.error for one in found]
+        entries: list[Estimate] = [getattr(entry, name) for _, entry in rows]
+        table[name] = [entry.value for entry in entries]
+        table[f"{name}_error"] = [entry.error for entry in entries]
     return table
 
 
 def _make(directories: Directories, quality: Quality) -> Outcome:
-    early = [homogeneous(directories, where, EARLY) for where in short_channels(quality)]
-    long = [homogeneous(directories, where, EARLY) for where in long_channels(quality)]
+    early = [homogeneous(directories, point, EARLY) for point in short_channels(quality)]
+    long = [homogeneous(directories, point, EARLY) for point in long_channels(quality)]
     late = list[Homogeneous]()
     if quality == "full":
-        late = [homogeneous(directories, where, LATE) for where in short_channels(quality)]
+        late = [homogeneous(directories, point, LATE) for point in short_channels(quality)]
     law = homogeneous_law(directories, quality)
     results = _early_results(law, early, long) + (_late_results(late) if late else [])
     table = _table([(EARLY, early), (EARLY, long), (LATE, late)])
@@ -249,8 +246,8 @@ def _early_results(
 ) -> list[Result]:
     intercept, slope = law.speed.coefficients
     everything = f"100 x 10, t from 12 to 300, rho up to 0.025; {law.speed.quality}"
-    moving = fit_quality(_densities(early), [one.co_moving for one in early])
-    parabola = fit_quality(_densities(early), [one.rest for one in early], degree=2)
+    moving = fit_polynomial(_densities(early), [entry.co_moving for entry in early])
+    parabola = fit_polynomial(_densities(early), [entry.rest for entry in early], degree=2)
     results = [
         compared(NUMBER, "c of v = c rho + c' at rest [a0^3/t0]", slope, REST_SLOPE, everything),
         compared(
@@ -285,9 +282,9 @@ def _early_results(
         ),
         measured(NUMBER, "permeability of the pure fluid, K [a0^3/t0]", law.permeability),
     ]
-    shorter = {one.where.density: one.rest for one in early}
-    gaps = [difference(one.rest, shorter[one.where.density]) for one in long]
-    level = fit_quality(_densities(long), gaps, degree=0)
+    shorter = {entry.point.density: entry.rest for entry in early}
+    gaps = [entry.rest - shorter[entry.point.density] for entry in long]
+    level = fit_polynomial(_densities(long), gaps, degree=0)
     results.append(
         claimed(
             NUMBER,
@@ -302,10 +299,10 @@ def _early_results(
 
 
 def _late_results(late: Sequence[Homogeneous]) -> list[Result]:
-    line = fit_quality(_densities(late), [one.rest for one in late])
-    dense = [one for one in late if one.where.density >= ZIGZAG]
-    bend = fit_quality(_densities(dense), [one.rest for one in dense])
-    below = fit_quality(_densities(dense), [_below(one) for one in dense], degree=0)
+    line = fit_polynomial(_densities(late), [entry.rest for entry in late])
+    dense = [entry for entry in late if entry.point.density >= ZIGZAG]
+    bend = fit_polynomial(_densities(dense), [entry.rest for entry in dense])
+    below = fit_polynomial(_densities(dense), [_below(entry) for entry in dense], degree=0)
     return [
         measured(
             NUMBER,
@@ -330,9 +327,9 @@ def _late_results(late: Sequence[Homogeneous]) -> list[Result]:
     ]
 
 
-def _below(one: Homogeneous) -> Estimate:
-    thesis = REST_SLOPE.value * one.where.density + REST_INTERCEPT.value
-    return difference(Estimate(thesis, 0.0), one.rest)
+def _below(entry: Homogeneous) -> Estimate:
+    thesis = REST_SLOPE.value * entry.point.density + REST_INTERCEPT.value
+    return thesis - entry.rest
 
 
 FIGURES = (

@@ -8,7 +8,7 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from numpy.typing import NDArray
 
-from analysis.blocking import Estimate, mean_of_independent
+from analysis.estimate import Estimate, mean_of_independent
 from lammps_inputs.scenes.channel import Channel
 from narrows.papers.drawing import COLOURS, PAPER, shades
 from narrows.papers.figure import Column, Directories, Outcome, PaperFigure, Quality
@@ -24,7 +24,6 @@ from narrows.papers.tabatabaei_2009.chain_ends import (
     compare,
     measured_ends,
 )
-from narrows.papers.tabatabaei_2009.state_points import difference
 
 NUMBER = "beyond-front"
 
@@ -55,13 +54,13 @@ def _chain(length: float, colloids: int, duration: float, seed: int) -> Channel:
     )
 
 
-def _draw(found: Comparison, scene: Channel) -> Figure:
+def _draw(comparison: Comparison, scene: Channel) -> Figure:
     figure = Figure(figsize=(10.5, 7.6), layout="constrained")
     (tail, head), (places_, widths) = figure.subplots(2, 2)
-    times, end = found.runs[0].times, scene.colloids * SPACING
+    times, end = comparison.runs[0].times, scene.colloids * SPACING
     shown = [round(i * (len(times) - 1) / 3) for i in range(4)]
-    density, error = found.mean("density")
-    edges = found.runs[0].edges
+    density, error = comparison.mean("density")
+    edges = comparison.runs[0].edges
     x = (edges[1:] + edges[:-1]) / 2
     for colour, row in zip(shades(4), shown, strict=True):
         for axes in (tail, head):
@@ -75,8 +74,8 @@ def _draw(found: Comparison, scene: Channel) -> Figure:
                 elinewidth=0.8,
                 label=f"$t$ = {times[row]:.0f}",
             )
-            axes.plot(x, found.predicted["two laws"].density[row], color=colour)
-            axes.plot(x, found.predicted["one law"].density[row], ":", color=colour)
+            axes.plot(x, comparison.predicted["two laws"].density[row], color=colour)
+            axes.plot(x, comparison.predicted["one law"].density[row], ":", color=colour)
     for axes, low, high in ((tail, -20, min(300.0, end / 2)), (head, end - 150, end + 110)):
         axes.set(
             xlim=(low, high),
@@ -95,7 +94,7 @@ def _draw(found: Comparison, scene: Channel) -> Figure:
             (places_, side, end if side == "head" else 0.0),
             (widths, f"{side}_width", 0.0),
         ):
-            value, spread = found.mean(measure)
+            value, spread = comparison.mean(measure)
             axes.errorbar(
                 times,
                 value - start,
@@ -106,7 +105,7 @@ def _draw(found: Comparison, scene: Channel) -> Figure:
                 label=side,
             )
             for law, style in (("two laws", "-"), ("one law", ":")):
-                predicted = getattr(found.predicted[law], measure) - start
+                predicted = getattr(comparison.predicted[law], measure) - start
                 axes.plot(times, predicted, style, color=COLOURS[number])
     places_.set(xlabel="time $t$  [$t_0$]", ylabel="way of the front  [$a_0$]")
     widths.set(xlabel="time $t$  [$t_0$]", ylabel="width of the front  [$a_0$]")
@@ -131,12 +130,12 @@ def _last_two(axes: Axes) -> tuple[list[Any], list[str]]:
     return [handles[i] for i in chosen], [labels[i] for i in chosen]
 
 
-def _table(found: Comparison) -> dict[str, Column]:
-    table: dict[str, Column] = {"time_t0": found.runs[0].times.tolist()}
+def _table(comparison: Comparison) -> dict[str, Column]:
+    table: dict[str, Column] = {"time_t0": comparison.runs[0].times.tolist()}
     for measure in MEASURES:
-        value, error = found.mean(measure)
+        value, error = comparison.mean(measure)
         table[measure], table[f"{measure}_error"] = value.tolist(), error.tolist()
-        for law, ends in found.predicted.items():
+        for law, ends in comparison.predicted.items():
             table[f"{measure}_{law.replace(' ', '_')}"] = getattr(ends, measure).tolist()
     return table
 
@@ -157,59 +156,65 @@ THESIS: dict[str, tuple[str, Sign]] = {
 
 def _make(directories: Directories, quality: Quality) -> Outcome:
     scenes = chains(quality)
-    found = compare(directories, scenes, beyond_flux.homogeneous_law(directories, quality))
-    results = [*_rates(found, _kind(scenes[0])), *_sharpness(found), *_deviations(found)]
+    comparison = compare(directories, scenes, beyond_flux.homogeneous_law(directories, quality))
+    results = [
+        *_rates(comparison, _kind(scenes[0])),
+        *_sharpness(comparison),
+        *_deviations(comparison),
+    ]
     for scene in longer_chains(quality):
         longer = measured_ends(directories[scene], scene)
-        results += _against_longer(found, longer, scene, scenes[0])
-    return Outcome(_draw(found, scenes[0]), _table(found), results)
+        results += _against_longer(comparison, longer, scene, scenes[0])
+    return Outcome(_draw(comparison, scenes[0]), _table(comparison), results)
 
 
-def _rates(found: Comparison, kind: str) -> list[Result]:
+def _rates(comparison: Comparison, kind: str) -> list[Result]:
     results = list[Result]()
     for measure, what in WHAT.items():
-        value = found.measured_rate(measure)
-        expected = {name: found.predicted_rate(name, measure) for name in LAWS}
-        note = "; ".join(f"{name}: {_text(one)}" for name, one in expected.items())
+        value = comparison.measured_rate(measure)
+        expected = {name: comparison.predicted_rate(name, measure) for name in LAWS}
+        note = "; ".join(f"{name}: {_text(entry)}" for name, entry in expected.items())
         if measure in THESIS:
             claim, sign = THESIS[measure]
             results.append(claimed(NUMBER, f"{what}, {kind}", value, claim, sign, note))
         else:
             results.append(measured(NUMBER, f"{what}, {kind}", value, note))
-        for name, one in expected.items():
-            gap = difference(value, one)
+        for name, entry in expected.items():
+            gap = value - entry
             results.append(measured(NUMBER, f"{what}, less that predicted by {name}", gap))
     return results
 
 
-def _sharpness(found: Comparison) -> list[Result]:
-    rates = [found.measured_rate(f"{side}_spacing") for side in ("head", "tail")]
+def _sharpness(comparison: Comparison) -> list[Result]:
+    rates = [comparison.measured_rate(f"{side}_spacing") for side in ("head", "tail")]
     results = [
         claimed(
             NUMBER,
             "growth of the spacings at the head less at the tail [a0/t0]",
-            difference(*rates),
+            rates[0] - rates[1],
             "distances at the head of the chain increase faster than those at the tail",
             "positive",
             "the other way round: the front sharpens at the head, where J convex in rho has it",
         )
     ]
     for side in ("head", "tail"):
-        last = mean_of_independent([float(getattr(run, f"{side}_width")[-1]) for run in found.runs])
+        last = mean_of_independent(
+            [float(getattr(run, f"{side}_width")[-1]) for run in comparison.runs]
+        )
         note = "; ".join(
             f"{name}: {float(getattr(ends, f'{side}_width')[-1]):.3g}"
-            for name, ends in found.predicted.items()
+            for name, ends in comparison.predicted.items()
         )
-        time = f"t = {found.runs[0].times[-1]:.0f}"
+        time = f"t = {comparison.runs[0].times[-1]:.0f}"
         results.append(measured(NUMBER, f"width of the {side} front at {time} [a0]", last, note))
     return results
 
 
-def _deviations(found: Comparison) -> list[Result]:
+def _deviations(comparison: Comparison) -> list[Result]:
     """Root mean square of measured less predicted density near the ends, at the last time."""
-    density, error = found.mean("density")
-    x = (found.runs[0].edges[1:] + found.runs[0].edges[:-1]) / 2
-    near = (x < 150) | (x > found.predicted["one law"].head[0] - 150)
+    density, error = comparison.mean("density")
+    x = (comparison.runs[0].edges[1:] + comparison.runs[0].edges[:-1]) / 2
+    near = (x < 150) | (x > comparison.predicted["one law"].head[0] - 150)
     noise = f"standard errors over seeds have an rms of {_rms(error[-1][near]):.2g}"
     return [
         measured(
@@ -217,7 +222,7 @@ def _deviations(found: Comparison) -> list[Result]:
             f"rms of density less {name} within 150 a0 of the ends, last time [1/a0^2]",
             Estimate(_rms((density[-1] - ends.density[-1])[near]), None, noise),
         )
-        for name, ends in found.predicted.items()
+        for name, ends in comparison.predicted.items()
     ]
 
 
@@ -229,13 +234,15 @@ def _kind(scene: Channel) -> str:
     return f"{scene.colloids} colloids in {scene.length:g} x {scene.width:g}"
 
 
-def _against_longer(found: Comparison, run: Ends, longer: Channel, scene: Channel) -> list[Result]:
+def _against_longer(
+    comparison: Comparison, run: Ends, longer: Channel, scene: Channel
+) -> list[Result]:
     """Places and widths at the last time of the longer chain, with the scatter of single runs."""
     row = len(run.times) - 1
     shift = {"head": (longer.colloids - scene.colloids) * SPACING}
     results = list[Result]()
     for measure in ("head", "tail", "head_width", "tail_width"):
-        values = [float(getattr(one, measure)[row]) for one in found.runs]
+        values = [float(getattr(entry, measure)[row]) for entry in comparison.runs]
         mean, spread = float(np.mean(values)), float(np.std(values, ddof=1))
         gap = float(getattr(run, measure)[row]) - shift.get(measure, 0.0) - mean
         error = spread * (1 + 1 / len(values)) ** 0.5
@@ -253,8 +260,8 @@ def _against_longer(found: Comparison, run: Ends, longer: Channel, scene: Channe
     return results
 
 
-def _text(one: Estimate) -> str:
-    return f"{one.value:.3g} +- {one.error:.1g}"
+def _text(entry: Estimate) -> str:
+    return f"{entry.value:.3g} +- {entry.error:.1g}"
 
 
 FIGURES = (

@@ -13,7 +13,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from analysis import RunDirectory
-from analysis.blocking import Estimate, mean_of_independent
+from analysis.estimate import Estimate, mean_of_independent
 from analysis.front import Front, coarse_density, fit_front, places
 from analysis.two_fluid import TwoFluid
 from lammps_inputs.scenes.channel import Channel

@@ -12,7 +12,7 @@ from matplotlib.patches import Circle
 from numpy.typing import NDArray
 
 from analysis import RunDirectory, chain
-from analysis.blocking import mean_of_independent
+from analysis.estimate import mean_of_independent
 from analysis.settling import SettlingSeries, settling_series
 from lammps_inputs.scenes.channel import Channel
 from narrows.papers.drawing import PAPER, one_panel, paper_remark, shades

@@ -20,8 +20,7 @@ from narrows.papers.results import PaperNumber, Result, claimed, compared, measu
 from narrows.papers.tabatabaei_2009.state_points import (
     Point,
     Speed,
-    difference,
-    point,
+    channel_point,
     scenes_of,
     speed,
 )
@@ -56,12 +55,12 @@ def few_colloids(number: int, quality: Quality) -> list[Point]:
         3: {100: 2, 260: 1},
     }
     table = (seeds if quality == "full" else quick)[number]
-    return [point(length, number, count) for length, count in table.items()]
+    return [channel_point(length, number, count) for length, count in table.items()]
 
 
 def crowds(quality: Quality) -> list[Point]:
     """More colloids, with hydrodynamics: Figs. 4.7 and 5.1 have the same runs."""
-    return [point(100, number, 3 if quality == "full" else 1) for number in CROWDS]
+    return [channel_point(100, number, 3 if quality == "full" else 1) for number in CROWDS]
 
 
 def without_interactions(solvent: Hydrodynamics, quality: Quality) -> list[Point]:
@@ -72,24 +71,24 @@ def without_interactions(solvent: Hydrodynamics, quality: Quality) -> list[Point
     table = [(length, 2, time) for length, time in durations.items()]
     table += [(100, number, durations[100]) for number in CROWDS]
     return [
-        point(length, number, seeds, time, hydrodynamics=solvent, equilibration=25.0)
+        channel_point(length, number, seeds, time, hydrodynamics=solvent, equilibration=25.0)
         for length, number, time in table
     ]
 
 
 def _figure_4_3(directories: Directories, quality: Quality) -> Outcome:
-    found = [speed(directories, where) for where in few_colloids(1, quality)]
-    dilute = [one for one in found if one.point.fraction < DILUTE]
+    entries = [speed(directories, point) for point in few_colloids(1, quality)]
+    dilute = [entry for entry in entries if entry.point.fraction < DILUTE]
     plateau = weighted_mean(co_moving(dilute))
     figure, axes = one_panel(FRACTION, SPEED)
     axes.axvspan(0, DILUTE, color=PAPER, alpha=0.07, linewidth=0)
     paper_remark(axes, 0.02, 0.03, "thesis: constant here", va="bottom")
-    points(axes, fractions(found), co_moving(found), label="one colloid, $L_x$ from 40 to 1000")
+    points(axes, fractions(entries), co_moving(entries), label="one colloid, $L_x$ from 40 to 1000")
     axes.plot([0, DILUTE], [plateau.value] * 2, label=f"mean below {DILUTE:g}: {plateau.value:.4f}")
-    draw_line_of_4_6(axes, found)
+    draw_line_of_4_6(axes, entries)
     axes.set(xlim=(0, None), ylim=(0, None))
     axes.legend(loc="lower right")
-    shortest = found[0]
+    shortest = entries[0]
     same_line = "one colloid and its periodic images should follow the same line as many do"
     results = [
         measured("4.3", "mean v_s of one colloid for phi < 0.015 [a0/t0]", plateau),
@@ -104,34 +103,34 @@ def _figure_4_3(directories: Directories, quality: Quality) -> Outcome:
         claimed(
             "4.3",
             f"v_s at L_x {shortest.point.length:g} less the mean for phi < 0.015 [a0/t0]",
-            difference(shortest.co_moving, plateau),
+            shortest.co_moving - plateau,
             "v_s increases for smaller length",
             "positive",
         ),
-        compared("4.3", LESS_LINE, mean_above_line(found), ON_LINE, same_line),
+        compared("4.3", LESS_LINE, mean_above_line(entries), ON_LINE, same_line),
     ]
-    return Outcome(figure, speed_table([("one colloid", found)]), results)
+    return Outcome(figure, speed_table([("one colloid", entries)]), results)
 
 
 def _few(
     directories: Directories, quality: Quality, numbers: Sequence[int]
 ) -> dict[int, list[Speed]]:
     return {
-        number: [speed(directories, where) for where in few_colloids(number, quality)]
+        number: [speed(directories, point) for point in few_colloids(number, quality)]
         for number in numbers
     }
 
 
 def _named(few: dict[int, list[Speed]]) -> list[tuple[str, Sequence[Speed]]]:
-    return [(f"N_c = {number}", found) for number, found in few.items()]
+    return [(f"N_c = {number}", entries) for number, entries in few.items()]
 
 
 def _figure_4_4(directories: Directories, quality: Quality) -> Outcome:
     few = _few(directories, quality, (1, 2, 3))
     figure, axes = one_panel(FRACTION, SPEED)
-    for number, found in few.items():
-        points(axes, fractions(found), co_moving(found), number - 1, label=f"$N_c$ = {number}")
-    everything = [one for found in few.values() for one in found]
+    for number, entries in few.items():
+        points(axes, fractions(entries), co_moving(entries), number - 1, label=f"$N_c$ = {number}")
+    everything = [entry for entries in few.values() for entry in entries]
     draw_line_of_4_6(axes, everything)
     axes.set(xlim=(0, None), ylim=(0, None))
     axes.legend(loc="lower right")
@@ -161,20 +160,20 @@ def _figure_4_5(directories: Directories, quality: Quality) -> Outcome:
     few = _few(directories, quality, (2, 3))
     figure, axes = one_panel("length of the channel $L_x$  [$a_0$]", SPEED)
     results: list[Result] = []
-    for number, found in few.items():
-        lengths = [one.point.length for one in found]
-        points(axes, lengths, co_moving(found), number - 1, label=f"$N_c$ = {number}")
+    for number, entries in few.items():
+        lengths = [entry.point.length for entry in entries]
+        points(axes, lengths, co_moving(entries), number - 1, label=f"$N_c$ = {number}")
         fine = np.geomspace(min(lengths), max(lengths), 200)
-        fraction = found[0].point.fraction * lengths[0] / fine
+        fraction = entries[0].point.fraction * lengths[0] / fine
         label = r"thesis, $0.15\,\phi + 0.019$ at $N_c$ = 2 and 3" if number == 2 else ""
         paper_line(axes, fine, SLOPE.value * fraction + INTERCEPT.value, label or "_")
-        short, dilute = found[0], [one for one in found if one.point.fraction < DILUTE]
+        short, dilute = entries[0], [entry for entry in entries if entry.point.fraction < DILUTE]
         results.append(
             claimed(
                 "4.5",
                 f"v_s at L_x {short.point.length:g} less the mean for phi < {DILUTE:g}, "
                 f"N_c = {number} [a0/t0]",
-                difference(short.co_moving, weighted_mean(co_moving(dilute))),
+                short.co_moving - weighted_mean(co_moving(dilute)),
                 "finite-size effects raise v_s at small L_x",
                 "positive",
             )
@@ -195,14 +194,14 @@ SOLVENTS: tuple[tuple[Hydrodynamics, str], ...] = (
 
 def _figure_4_8(directories: Directories, quality: Quality) -> Outcome:
     off = {
-        solvent: [speed(directories, where) for where in without_interactions(solvent, quality)]
+        solvent: [speed(directories, point) for point in without_interactions(solvent, quality)]
         for solvent, _ in SOLVENTS
     }
-    on = [speed(directories, where) for where in [*few_colloids(2, quality), *crowds(quality)]]
+    on = [speed(directories, point) for point in [*few_colloids(2, quality), *crowds(quality)]]
     figure, axes = one_panel(FRACTION, SPEED)
     for number, (solvent, words) in enumerate(SOLVENTS):
-        found = off[solvent]
-        points(axes, fractions(found), co_moving(found), number, label=f"off: {words}")
+        entries = off[solvent]
+        points(axes, fractions(entries), co_moving(entries), number, label=f"off: {words}")
     points(axes, fractions(on), co_moving(on), 2, label="hydrodynamics on")
     draw_line_of_4_6(axes, on)
     axes.axhline(0, color="0.7", linewidth=0.8, zorder=0)
@@ -212,13 +211,13 @@ def _figure_4_8(directories: Directories, quality: Quality) -> Outcome:
     axes.set(xlim=(0, None))
     axes.legend(loc="center right", bbox_to_anchor=(1.0, 0.5))
 
-    def pairs(found: list[Speed]) -> list[Speed]:
-        return [one for one in found if one.point.colloids == 2]
+    def pairs(entries: list[Speed]) -> list[Speed]:
+        return [entry for entry in entries if entry.point.colloids == 2]
 
-    def short(found: list[Speed]) -> list[Speed]:
-        return [one for one in found if one.point.length == 100]
+    def short(entries: list[Speed]) -> list[Speed]:
+        return [entry for entry in entries if entry.point.length == 100]
 
-    means = {solvent: weighted_mean(co_moving(pairs(found))) for solvent, found in off.items()}
+    means = {solvent: weighted_mean(co_moving(pairs(entries))) for solvent, entries in off.items()}
     independent = "without hydrodynamic interactions v_s does not depend on phi"
     crowded = f"slope dv_s/dphi of 2 to {max(CROWDS)} colloids in L_x = 100"
     results = [
@@ -240,7 +239,7 @@ def _figure_4_8(directories: Directories, quality: Quality) -> Outcome:
             claimed(
                 "4.8",
                 f"{crowded}, hydrodynamics on less {words} [a0/t0]",
-                difference(slope_on, slope_off),
+                slope_on - slope_off,
                 "the increase is an effect of hydrodynamic interactions",
                 "positive",
             ),
@@ -249,7 +248,7 @@ def _figure_4_8(directories: Directories, quality: Quality) -> Outcome:
         claimed(
             "4.8",
             "mean v_s, velocities interchanged less redrawn [a0/t0]",
-            difference(means["shuffle"], means["bath"]),
+            means["shuffle"] - means["bath"],
             "similar results in the two cases",
             "zero",
         ),

@@ -2,9 +2,9 @@
 
 import numpy as np
 
-from analysis import blocking, flow
-from analysis.blocking import Estimate
+from analysis import correlated_mean, flow
 from analysis.depletion import wall_depletion
+from analysis.estimate import Estimate
 from lammps_inputs.scenes.channel import Channel
 from lammps_inputs.viscosity import viscosity
 from narrows.papers.drawing import SPEED, one_panel, paper_line, paper_remark, points
@@ -12,9 +12,8 @@ from narrows.papers.figure import Column, Directories, Outcome, PaperFigure, Qua
 from narrows.papers.results import PaperNumber, claimed, compared, measured
 from narrows.papers.tabatabaei_2009.state_points import (
     Point,
-    difference,
+    channel_point,
     fit,
-    point,
     scenes_of,
     speed,
 )
@@ -39,35 +38,35 @@ def field_points(wall_sigma: float, quality: Quality) -> list[Point]:
     seeds = 8 if quality == "full" else 2
     first_seed = 1 if wall_sigma == WIDE else 101  # else the same until a colloid meets a wall
     return [
-        point(40, 3, seeds, first_seed=first_seed, gravity=gravity, wall_sigma=wall_sigma)
+        channel_point(40, 3, seeds, first_seed=first_seed, gravity=gravity, wall_sigma=wall_sigma)
         for gravity in _gravities(quality)
     ]
 
 
-def _reynolds(directories: Directories, where: Point) -> Estimate:
+def _reynolds(directories: Directories, point: Point) -> Estimate:
     """(4.11) of the fluid's mean velocity and the viscosity of theory."""
     velocities = []
-    for scene in where.scenes:
+    for scene in point.scenes:
         run = directories[scene]
         fluid = run.profile()
         used = run.sampled(fluid.steps)
         velocities.append(flow.mean_velocity(fluid.counts[used], fluid.velocity_x[used]))
-    scene = where.scenes[0]
+    scene = point.scenes[0]
     nu = viscosity(scene.density, scene.collision_time, scene.angle)
     scale = flow.reynolds_number(1.0, scene.width, nu)
-    return blocking.mean(np.concatenate(velocities)).scaled(scale)
+    return correlated_mean.mean(velocities).scaled(scale)
 
 
 def _figure_4_9(directories: Directories, quality: Quality) -> Outcome:
     gravities = _gravities(quality)
-    numbers = [_reynolds(directories, where) for where in field_points(WIDE, quality)]
+    numbers = [_reynolds(directories, point) for point in field_points(WIDE, quality)]
     line = fit(gravities, numbers)
     figure, axes = one_panel(GRAVITY, r"Reynolds number  $\langle v \rangle L_y / \nu$")
     points(axes, gravities, numbers, label="40 x 10, three colloids")
-    assert line[0].value is not None
-    assert line[1].value is not None
     ends = np.array([0.0, 0.21])
-    axes.plot(ends, line[0].value + line[1].value * ends, label=f"line, slope {line[1].value:.3f}")
+    axes.plot(
+        ends, line[0].number + line[1].number * ends, label=f"line, slope {line[1].number:.3f}"
+    )
     paper_remark(axes, 0.05, 0.72, "thesis: linear in $g$,\nand well below 1")
     axes.set(xlim=(0, 0.21), ylim=(0, None))
     axes.legend(loc="upper left")
@@ -77,7 +76,7 @@ def _figure_4_9(directories: Directories, quality: Quality) -> Outcome:
         claimed(
             "4.9",
             "1 less the Reynolds number at g = 0.2",
-            difference(Estimate(1.0, 0.0), strongest),
+            1 - strongest,
             "small enough for laminar flow",
             "positive",
         ),
@@ -109,19 +108,17 @@ def _well_at_the_wall(scene: Channel) -> float:
 def _figure_4_10(directories: Directories, quality: Quality) -> Outcome:
     gravities = _gravities(quality)
     speeds = {
-        sigma: [speed(directories, where) for where in field_points(sigma, quality)]
+        sigma: [speed(directories, point) for point in field_points(sigma, quality)]
         for sigma in (WIDE, NARROW)
     }
-    wide, narrow = ([one.co_moving for one in found] for found in speeds.values())
+    wide, narrow = ([entry.co_moving for entry in entries] for entries in speeds.values())
     figure, axes = one_panel(GRAVITY, SPEED)
-    for number, (sigma, found) in enumerate(((WIDE, wide), (NARROW, narrow))):
-        points(axes, gravities, found, number, label=rf"$\sigma_w$ = {sigma:g}")
+    for number, (sigma, entries) in enumerate(((WIDE, wide), (NARROW, narrow))):
+        points(axes, gravities, entries, number, label=rf"$\sigma_w$ = {sigma:g}")
     intercept, slope = fit(gravities, wide)
-    assert slope.value is not None
-    assert intercept.value is not None
     ends = np.array([0.0, 0.21])
-    label = rf"our fit for $\sigma_w$ = 2: slope {slope.value:.3f}"
-    axes.plot(ends, intercept.value + slope.value * ends, color="0.25", label=label)
+    label = rf"our fit for $\sigma_w$ = 2: slope {slope.number:.3f}"
+    axes.plot(ends, intercept.number + slope.number * ends, color="0.25", label=label)
     paper_line(axes, ends, SLOPE.value * ends, "thesis: slope 0.34")
     axes.set(xlim=(0, 0.21), ylim=(0, None))
     axes.legend(loc="upper left")
@@ -157,7 +154,7 @@ def _figure_4_10(directories: Directories, quality: Quality) -> Outcome:
         measured(
             "4.10",
             "v_s at g = 0.2, sigma_w = 1.2 less 2.0 [a0/t0]",
-            difference(narrow[-1], wide[-1]),
+            narrow[-1] - wide[-1],
             "the thesis: a small deviation from the line for sigma_w = 1.2",
         )
     )
@@ -165,22 +162,22 @@ def _figure_4_10(directories: Directories, quality: Quality) -> Outcome:
         measured(
             "4.10",
             f"depth of the well at the wall that depletion makes, sigma_w = {sigma:.1f} [kBT]",
-            Estimate(_well_at_the_wall(where.scenes[0]), 0.0),
+            Estimate(_well_at_the_wall(point.scenes[0]), 0.0),
             "exact: the MPC fluid is an ideal gas, and presses a colloid to a wall that lets the "
             "colloid come closer than the colloid lets the fluid",
         )
         for sigma in (WIDE, NARROW)
-        for where in field_points(sigma, quality)[:1]
+        for point in field_points(sigma, quality)[:1]
     ]
     table: dict[str, Column] = {
         "gravity": gravities,
         **{
             f"{name}_sigma_w_{sigma:g}": column
-            for sigma, found in speeds.items()
+            for sigma, entries in speeds.items()
             for name, column in (
-                ("v_s", [one.co_moving.value for one in found]),
-                ("v_s_error", [one.co_moving.error for one in found]),
-                ("rms_off_mid_line_a0", [one.off_mid_line for one in found]),
+                ("v_s", [entry.co_moving.value for entry in entries]),
+                ("v_s_error", [entry.co_moving.error for entry in entries]),
+                ("rms_off_mid_line_a0", [entry.off_mid_line for entry in entries]),
             )
         },
     }

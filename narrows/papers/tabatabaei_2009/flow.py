@@ -6,7 +6,7 @@ from functools import partial
 import numpy as np
 
 from analysis import analyze, flow
-from analysis.blocking import Estimate
+from analysis.estimate import Estimate
 from lammps_inputs import Scene
 from lammps_inputs.scenes.poiseuille import Poiseuille
 from narrows.papers.drawing import one_panel, paper_line

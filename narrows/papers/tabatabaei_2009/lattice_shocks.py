@@ -8,7 +8,7 @@ import numpy as np
 from matplotlib.figure import Figure
 from scipy.stats import poisson, skellam
 
-from analysis.blocking import Estimate
+from analysis.estimate import Estimate
 from lattice.completion import ShockModel, complete_shock
 from lattice.models import Vector
 from lattice.monte_carlo import Ensemble, estimate_walk, shock_evidence, simulate

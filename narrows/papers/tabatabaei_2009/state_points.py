@@ -10,11 +10,10 @@ from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
 from typing import Any
 
-import numpy as np
 from numpy.typing import ArrayLike
 
-from analysis import RunDirectory, blocking
-from analysis.blocking import Estimate
+from analysis import RunDirectory, correlated_mean
+from analysis.estimate import Estimate
 from analysis.line_fit import fit_polynomial
 from analysis.settling import SettlingSeries, settling_series
 from lammps_inputs import Scene
@@ -51,7 +50,7 @@ class Point:
         return math.pi * self.scenes[0].colloid_radius ** 2 * self.density
 
 
-def point(
+def channel_point(
     length: int,
     colloids: int,
     seeds: int,
@@ -97,30 +96,20 @@ class Speed:
     off_mid_line: float
 
 
-def speed(directories: Directories, where: Point) -> Speed:
-    """Mean over time and seeds, with the error of the blocks of all seeds one after the other."""
-    runs = [_read(directories[scene]) for scene in where.scenes]
-    moving = np.concatenate([series.co_moving[series.used] for series, _ in runs])
-    rest = np.concatenate([series.rest[series.used] for series, _ in runs])
+def speed(directories: Directories, point: Point) -> Speed:
+    """Mean over time and seeds, with the error of all runs together."""
+    runs = [_read(directories[scene]) for scene in point.scenes]
+    moving = correlated_mean.mean([series.co_moving[series.used] for series, _ in runs])
+    rest = correlated_mean.mean([series.rest[series.used] for series, _ in runs])
     off = math.sqrt(sum(square for _, square in runs) / len(runs))
-    return Speed(where, blocking.mean(moving), blocking.mean(rest), off)
+    return Speed(point, moving, rest, off)
 
 
 def scenes_of(all_points: Iterable[Point]) -> list[Scene]:
     """Every run of the points."""
-    return [scene for where in all_points for scene in where.scenes]
-
-
-def difference(one: Estimate, other: Estimate) -> Estimate:
-    """Of two independent numbers."""
-    assert one.value is not None
-    assert other.value is not None
-    errors = [one.error, other.error]
-    joint = None if None in errors else math.hypot(*(error or 0.0 for error in errors))
-    return Estimate(one.value - other.value, joint, one.reason or other.reason)
+    return [scene for point in all_points for scene in point.scenes]
 
 
 def fit(x: ArrayLike, y: Sequence[Estimate], degree: int = 1) -> list[Estimate]:
     """Coefficients of 1, x, x^2, ... of a polynomial through measured points."""
-    values, errors = [one.value for one in y], [one.error for one in y]
-    return fit_polynomial(x, np.array(values, float), np.array(errors, float), degree)
+    return list(fit_polynomial(x, y, degree).coefficients)

@@ -3,8 +3,8 @@
 import numpy as np
 import pytest
 
-from analysis.blocking import Estimate
-from analysis.flux import fit_quality
+from analysis.estimate import Estimate
+from analysis.line_fit import fit_polynomial
 from lammps_inputs.scenes.channel import Channel
 from narrows.papers.figure import Quality
 from narrows.papers.tabatabaei_2009 import beyond_flux
@@ -59,8 +59,8 @@ def test_colloids_that_drag_no_fluid_leave_one_law() -> None:
 def test_replicas_scatter_as_the_errors_say() -> None:
     rho = (0.002, 0.01, 0.02)
     speeds = [Estimate(0.02 + 5.8 * r, 0.002) for r in rho]
-    flat = fit_quality(rho, [Estimate(0.31, 0.01)] * 3, degree=0)
-    law = Law(rho, fit_quality(rho, speeds), (0.002,) * 3, flat, Estimate(0.2, 0.004))
+    flat = fit_polynomial(rho, [Estimate(0.31, 0.01)] * 3, degree=0)
+    law = Law(rho, fit_polynomial(rho, speeds), (0.002,) * 3, flat, Estimate(0.2, 0.004))
     rng = np.random.default_rng(3)
     found = [law.replica(rng) for _ in range(2000)]
     for name, estimate in (

@@ -3,7 +3,7 @@ from pathlib import Path
 
 import pytest
 
-from analysis.blocking import Estimate
+from analysis.estimate import Estimate
 from narrows.papers.page import count_verdicts
 from narrows.papers.results import PaperNumber, Sign, claimed, compared, measured, write_results
 

@@ -6,7 +6,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from analysis.blocking import Estimate
+from analysis.estimate import Estimate
 from lammps_inputs.deck import check_engine
 from lattice.shocks import end_rates, hopping_rates, random_walk_residuals
 from narrows.papers.figure import Quality
@@ -16,9 +16,8 @@ from narrows.papers.tabatabaei_2009.few_colloids import crowds
 from narrows.papers.tabatabaei_2009.lattice_shocks import SHOCKS, RunningShock
 from narrows.papers.tabatabaei_2009.state_points import (
     Speed,
-    difference,
+    channel_point,
     fit,
-    point,
     scenes_of,
 )
 from narrows.papers.tabatabaei_2009.volume_fraction import mean_above_line
@@ -56,7 +55,7 @@ def test_crowds_of_4_8_cost_nothing_beside_5_1(quality: Quality) -> None:
 
 def test_distance_from_the_line_of_4_6_where_it_was_fitted() -> None:
     def found(colloids: int, above: float, error: float) -> Speed:
-        where = point(100, colloids, seeds=1)
+        where = channel_point(100, colloids, seeds=1)
         line = Estimate(0.15 * where.fraction + 0.019 + above, error)
         return Speed(where, line, line, 0.0)
 
@@ -84,16 +83,16 @@ def test_select() -> None:
 
 def test_volume_fraction_of_the_thesis() -> None:
     # phi below 0.015 is a length above 84 for one colloid (the thesis says 100)
-    where = point(100, 1, seeds=2)
+    where = channel_point(100, 1, seeds=2)
     assert where.fraction == pytest.approx(math.pi * 4 / 1000)
     assert where.density == pytest.approx(1e-3)
     assert [scene.seed for scene in where.scenes] == [1, 2]
 
 
 def test_difference_and_fit_carry_errors() -> None:
-    gap = difference(Estimate(5.0, 0.3), Estimate(2.0, 0.4))
+    gap = Estimate(5.0, 0.3) - Estimate(2.0, 0.4)
     assert (gap.value, gap.error) == pytest.approx((3.0, 0.5))
-    assert difference(Estimate(5.0, None, "why"), Estimate(2.0, 0.4)).error is None
+    assert (Estimate(5.0, None, "why") - Estimate(2.0, 0.4)).error is None
     intercept, slope = fit([0.0, 2.0], [Estimate(3.0, 0.3), Estimate(5.0, 0.4)])
     assert (intercept.value, slope.value, slope.error) == pytest.approx((3.0, 1.0, 0.25))
 

@@ -3,7 +3,7 @@
 import sys
 from pathlib import Path
 
-from analysis.blocking import Estimate
+from analysis.estimate import Estimate
 from lammps_inputs.engines import DEFAULT
 from lammps_inputs.scenes.channel import Channel
 from narrows.papers.drawing import one_panel

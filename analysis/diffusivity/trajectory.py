@@ -1,0 +1,196 @@
+"""A trajectory of anybody's, by all three estimators: what `narrows diffusivity` calls."""
+
+import csv
+import warnings
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+import MDAnalysis
+import numpy as np
+from matplotlib.figure import Figure
+from numpy.typing import NDArray
+
+from analysis.diffusivity.bayes import BayesianDiffusivity
+from analysis.diffusivity.color import ColorDiffusivity
+from analysis.diffusivity.coordinates import AlongAxis
+from analysis.diffusivity.errors import DiffusivityError
+from analysis.diffusivity.first_passage import FirstPassageDiffusivity
+
+Array = NDArray[np.float64]
+
+ESTIMATORS = ("color", "bayes", "first-passage")
+QUANTILE = 0.05  # of positions beyond which particles react, where no surfaces are given
+
+
+@dataclass(frozen=True)
+class Estimated:
+    """A profile.
+
+    Attributes:
+        estimator: its name.
+        positions, diffusivity, error: of equal length.
+        remark: what a reader should know of it, one line.
+    """
+
+    estimator: str
+    positions: Array
+    diffusivity: Array
+    error: Array
+    remark: str
+
+
+def open_trajectory(
+    trajectory: Path, topology: Path | None, select: str, dt: float | None = None
+) -> Any:
+    """The selected atoms of files that MDAnalysis reads.
+
+    Args:
+        dt: time between two frames, where the file does not tell it (then it would be 1).
+
+    Raises:
+        DiffusivityError: when a file is missing or cannot be read, or nothing is selected.
+    """
+    if dt is not None and not 0 < dt < np.inf:
+        raise DiffusivityError(f"dt = {dt:g}: must be positive")
+    files = [file for file in (topology, trajectory) if file]
+    for file in files:
+        if not file.is_file():
+            raise DiffusivityError(f"{file}: no such file")
+    try:
+        with warnings.catch_warnings():
+            warnings.simplefilter("ignore")
+            options = {} if dt is None else {"dt": dt}
+            universe = MDAnalysis.Universe(*map(str, files), **options)
+    except Exception as error:  # each of its readers has errors of its own
+        reason = " ".join(str(error).split())[:200]
+        raise DiffusivityError(f"{trajectory}: MDAnalysis cannot read it: {reason}") from None
+    try:
+        atoms = universe.select_atoms(select)
+    except Exception as error:
+        reason = " ".join(str(error).split())[:200]
+        raise DiffusivityError(f"select = {select!r}: {reason}") from None
+    if len(atoms) == 0:
+        raise DiffusivityError(f"select = {select!r}: no atom of {len(universe.atoms)}")
+    return atoms
+
+
+def reach_of(atoms: Any, axis: str) -> tuple[float, float, float, float]:
+    """Least and greatest position along an axis, and two surfaces a little within.
+
+    Raises:
+        DiffusivityError: when the particles do not move along it.
+    """
+    coordinate = AlongAxis(atoms, axis)
+    trajectory = coordinate.trajectory
+    if len(trajectory) < 2:
+        raise DiffusivityError(f"{len(trajectory)} frames; at least 2 are needed")
+    frames = np.unique(np.linspace(0, len(trajectory) - 1, 200).astype(int))
+    seen = []
+    for frame in frames:
+        trajectory[int(frame)]
+        seen.append(coordinate.values())
+    values = np.concatenate(seen)
+    if not np.isfinite(values).all():
+        raise DiffusivityError(f"axis = {axis!r}: positions that are not finite")
+    least, most = float(values.min()), float(values.max())
+    if not most - least > 1e-6 * max(1.0, abs(most)):
+        raise DiffusivityError(f"axis = {axis!r}: all particles stay at {least:g}")
+    low, high = np.quantile(values, [QUANTILE, 1 - QUANTILE])
+    return least, most, float(low), float(high)
+
+
+def estimate_all(
+    atoms: Any,
+    axis: str,
+    low: float | None = None,
+    high: float | None = None,
+    estimators: tuple[str, ...] = ESTIMATORS,
+) -> tuple[list[Estimated], list[str]]:
+    """D along an axis by each estimator; and one line for each that the data do not suffice for.
+
+    Args:
+        low, high: the two surfaces of colours and first passage; by default beyond either lies a
+            twentieth of the particles.
+
+    Raises:
+        DiffusivityError: for unusable parameters, or when no estimator has enough data.
+    """
+    for name in estimators:
+        if name not in ESTIMATORS:
+            raise DiffusivityError(f"estimator = {name!r}: must be one of {', '.join(ESTIMATORS)}")
+    least, most, inner_low, inner_high = reach_of(atoms, axis)
+    low = inner_low if low is None else low
+    high = inner_high if high is None else high
+    if not least < low < high < most:
+        raise DiffusivityError(
+            f"low = {low:g}, high = {high:g}: must be increasing, and within the positions, "
+            f"{least:g} to {most:g}"
+        )
+    coordinate = AlongAxis(atoms, axis)
+    found, missing = list[Estimated](), list[str]()
+    for name in estimators:
+        try:
+            found.append(_estimate(name, coordinate, (least, most), (low, high)))
+        except DiffusivityError as error:
+            missing.append(f"{name}: {error}")
+    if not found:
+        raise DiffusivityError("\n".join(missing))
+    return found, missing
+
+
+def _estimate(
+    name: str, coordinate: AlongAxis, ends: tuple[float, float], surfaces: tuple[float, float]
+) -> Estimated:
+    if name == "bayes":
+        frames = len(coordinate.trajectory)
+        lags = [lag for lag in (1, 2, 4, 8, 16, 32) if lag <= max(1, frames // 10)]
+        results = BayesianDiffusivity(coordinate, *ends, lags=lags).run().results
+        remark = f"lag {results.lag:g}, of {', '.join(f'{lag:g}' for lag in results.lags)}"
+    elif name == "color":
+        results = ColorDiffusivity(coordinate, *surfaces).run().results
+        lower, upper = results.rate
+        remark = f"reactions per time at the surfaces: {lower:.4g} and {upper:.4g}"
+    else:
+        results = FirstPassageDiffusivity(coordinate, *surfaces).run().results
+        remark = f"at least {int(results.trips.min())} round trips to a level"
+    known = np.isfinite(results.diffusivity) & np.isfinite(results.error)
+    return Estimated(
+        name,
+        results.positions[known],
+        results.diffusivity[known],
+        results.error[known],
+        remark,
+    )
+
+
+def write(found: list[Estimated], axis: str, out: Path) -> list[Path]:
+    """diffusivity.csv and diffusivity.png in a folder; their paths.
+
+    Raises:
+        OSError: when they cannot be written.
+    """
+    out.mkdir(parents=True, exist_ok=True)
+    table, picture = out / "diffusivity.csv", out / "diffusivity.png"
+    with table.open("w", newline="", encoding="utf-8") as file:
+        writer = csv.writer(file)
+        writer.writerow(("estimator", axis, "diffusivity", "error"))
+        for each in found:
+            rows = zip(each.positions, each.diffusivity, each.error, strict=True)
+            writer.writerows((each.estimator, *row) for row in rows)
+    figure = Figure(figsize=(7, 4.5), layout="constrained")
+    axes = figure.subplots()
+    for each in found:
+        bar = axes.errorbar(
+            each.positions, each.diffusivity, each.error, label=each.estimator, elinewidth=0.7
+        )
+        bar[0].set_markersize(3)
+    middle = np.concatenate([each.diffusivity for each in found])
+    axes.set(
+        xlabel=f"${axis}$",
+        ylabel="diffusivity $D$ [length$^2$/time]",
+        ylim=(0, 1.5 * float(np.quantile(middle, 0.95))),
+    )
+    axes.legend()
+    figure.savefig(picture, dpi=150)
+    return [table, picture]

@@ -1,0 +1,45 @@
+"""The order parameter of lanes, across the field and as the paper prints it."""
+
+import numpy as np
+from matplotlib.figure import Figure
+from numpy.typing import NDArray
+
+from analysis import correlated_mean
+from analysis.drawing import TIME, mark_equilibration, one_panel
+from analysis.findings import Findings
+from analysis.lane_order import lane_order, lane_order_printed
+from analysis.measures.settling_speed import sampled_frames
+from analysis.run_directory import RunDirectory
+
+Array = NDArray[np.float64]
+
+
+def measure(run: RunDirectory) -> Findings:
+    """Means over time of both, and the history of the first."""
+    used, particles = sampled_frames(run), run.particles()
+    where = (particles.positions, particles.species, run.box.sizes)
+    order = lane_order(*where)
+    printed = lane_order_printed(particles.positions[used], *where[1:])
+    picture = draw(run.times(particles.steps), order, run.equilibration_time)
+    return Findings(
+        {
+            "lane_order": correlated_mean.mean(order[used]).as_json(),
+            "lane_order_printed": correlated_mean.mean(printed).as_json(),
+        },
+        {"lane_order.png": picture},
+    )
+
+
+def draw(times: Array, order: Array, equilibration: float) -> Figure:
+    """phi against time.
+
+    Args:
+        times: (T,) [t0].
+        order: (T,).
+        equilibration: end of what averages leave out [t0].
+    """
+    figure, axes = one_panel(TIME, r"lane order $\phi$, across the field")
+    axes.plot(times, order, linewidth=1)
+    axes.set_ylim(0, 1)
+    mark_equilibration(axes, equilibration)
+    return figure

@@ -1,0 +1,134 @@
+// The fluid as it rests in files and restarts: whatever the bytes are, it is read, or a Fault says
+// in one line why not. Sizes are checked before memory is asked for.
+
+#pragma once
+
+#include "fluid.h"
+
+#include <cmath>
+#include <cstdio>
+#include <cstring>
+#include <vector>
+
+namespace mpc {
+
+constexpr char FLUID_FILE[8] = {'m', 'p', 'c', 'f', 'l', 'u', 'i', 'd'};
+constexpr char RESTART[8] = {'m', 'p', 'c', 's', 't', 'a', 't', 'e'};
+
+// FNV-1a by words of 8 bytes: any word that changes changes it.
+class Checksum {
+ public:
+  void add(const void *data, std::size_t bytes)
+  {
+    const char *next = static_cast<const char *>(data);
+    for (; bytes >= sizeof(std::uint64_t); bytes -= sizeof(std::uint64_t)) {
+      std::uint64_t word;
+      std::memcpy(&word, next, sizeof word);
+      value_ = (value_ ^ word) * 0x100000001b3;
+      next += sizeof word;
+    }
+  }
+  std::uint64_t value() const { return value_; }
+
+ private:
+  std::uint64_t value_ = 0xcbf29ce484222325;
+};
+
+// What a restart begins with, before the pulls on the colloids, the particles and their checksum.
+struct RestartHeader {
+  FluidHeader fluid;
+  std::int64_t processes, pulls;
+  std::uint64_t seed, checksum;    // the latter of what stands before it
+
+  std::uint64_t expected() const
+  {
+    Checksum sum;
+    sum.add(this, sizeof *this - sizeof checksum);
+    return sum.value();
+  }
+};
+
+inline RestartHeader restart_header(int dimension, std::int64_t particles, std::int64_t collisions,
+                                    std::int64_t processes, std::int64_t pulls, std::uint64_t seed)
+{
+  RestartHeader header{{{}, dimension, particles, collisions}, processes, pulls, seed, 0};
+  std::memcpy(header.fluid.magic, RESTART, sizeof RESTART);
+  header.checksum = header.expected();
+  return header;
+}
+
+// The header of a restart of D dimensions and that seed; the buffer holds at least one.
+template <int D> RestartHeader read_restart_header(const char *buffer, std::uint64_t seed)
+{
+  RestartHeader header;
+  std::memcpy(&header, buffer, sizeof header);
+  if (std::memcmp(header.fluid.magic, RESTART, sizeof RESTART))
+    throw Fault("restart: not of this version of fix mpc");
+  if (header.checksum != header.expected()) throw Fault("restart: damaged");
+  if (header.fluid.dimension != D) throw Fault("restart: of another dimension");
+  if (header.seed != seed)
+    throw Fault("restart: of the seed " + std::to_string(header.seed) + ", not " +
+                std::to_string(seed));
+  return header;
+}
+
+// Visit the pulls, then the particles of a restart, once all are known to be what was written.
+template <int D, class Pull, class OnPull, class OnParticle>
+RestartHeader read_restart(const char *buffer, std::uint64_t seed, const OnPull &on_pull,
+                           const OnParticle &on_particle)
+{
+  const auto header = read_restart_header<D>(buffer, seed);
+  const char *next = buffer + sizeof header;
+  const std::size_t bytes =
+      header.pulls * sizeof(Pull) + header.fluid.particles * sizeof(Particle<D>);
+  Checksum sum;
+  sum.add(next, bytes);
+  std::uint64_t checksum;
+  std::memcpy(&checksum, next + bytes, sizeof checksum);
+  if (checksum != sum.value()) throw Fault("restart: damaged");
+  for (std::int64_t n = 0; n < header.pulls; ++n, next += sizeof(Pull)) {
+    Pull pull;
+    std::memcpy(&pull, next, sizeof pull);
+    on_pull(pull);
+  }
+  for (std::int64_t n = 0; n < header.fluid.particles; ++n, next += sizeof(Particle<D>)) {
+    Particle<D> particle;
+    std::memcpy(&particle, next, sizeof particle);
+    on_particle(particle);
+  }
+  return header;
+}
+
+// The header of a file of that many bytes, of a fluid in D dimensions.
+template <int D> void check_fluid_header(const FluidHeader &header, std::uint64_t bytes)
+{
+  if (std::memcmp(header.magic, FLUID_FILE, sizeof FLUID_FILE) || header.dimension != D ||
+      header.particles < 1)
+    throw Fault("not a fluid in " + std::to_string(D) + " dimensions");
+  const std::uint64_t most = (bytes - sizeof header) / sizeof(Particle<D>);
+  if (static_cast<std::uint64_t>(header.particles) != most ||
+      (bytes - sizeof header) % sizeof(Particle<D>))
+    throw Fault(std::to_string(bytes) + " bytes do not hold " + std::to_string(header.particles) +
+                " particles");
+}
+
+inline std::string short_number(double number)
+{
+  char text[32];
+  std::snprintf(text, sizeof text, "%g", number);
+  return text;
+}
+
+// Stop at a particle that cannot be; the numbers 0 ... N - 1 are each of one particle.
+template <int D> void check_number(const Particle<D> &particle, std::vector<bool> &known)
+{
+  const double number = particle.id;
+  if (!(number >= 0 && number < static_cast<double>(known.size()) && number == std::floor(number)))
+    throw Fault("a particle " + short_number(number) + ": numbers are whole, from 0 to " +
+                std::to_string(known.size() - 1));
+  const auto place = static_cast<std::size_t>(number);
+  if (known[place]) throw Fault("two particles " + std::to_string(place));
+  known[place] = true;
+}
+
+}    // namespace mpc

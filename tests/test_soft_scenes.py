@@ -1,0 +1,273 @@
+"""The scenes `lanes` and `shear`: runs, resumes, two ranks, a ladder of fields, bad input."""
+
+import json
+import signal
+import subprocess
+import sys
+import time
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pytest
+
+import lammps_plugin
+from analysis import RunDirectory, analyze
+from lammps_inputs import Scene, SceneError, make_scene
+from lammps_inputs.deck import check_engine, warnings
+from srd_driver import RunError, Simulation, sweep_definition
+from srd_driver.sweep import run_all
+from tests.conftest import ROOT, Run
+
+pytestmark = pytest.mark.skipif(not lammps_plugin.folder(), reason="the plugin is not built")
+
+SMALL = {
+    "particles": 120,
+    "density": 0.75,
+    "rest": 2.0,
+    "sampling_interval": 0.25,
+    "equilibration": 0.5,
+    "duration": 7.5,
+}
+EXACT = ("kinetic", "kinetic_x", "kinetic_y", "configurational")
+NOISE = ("langevin", "dpd")
+NUMBERS = {
+    "lane_order",
+    "lane_order_printed",
+    "bond_order",
+    "configurational_temperature",
+    "kinetic_temperature",
+    "stream_temperature",
+    "potential_energy",
+    "pressure",
+    "current",
+    "mobility",
+}
+
+
+def lanes(**fields: Any) -> Scene:
+    return make_scene("lanes", **(SMALL | {"field": 1.5} | fields))
+
+
+def shear(**fields: Any) -> Scene:
+    return make_scene("shear", **(SMALL | {"dimension": 2, "rate": 1.5} | fields))
+
+
+def finish(scene: Scene, folder: Path) -> Path:
+    with Simulation(scene, "md", folder) as simulation:
+        simulation.finish()
+    return folder
+
+
+def rows(folder: Path, file: str) -> list[str]:
+    """Without titles, which LAMMPS repeats when it goes on."""
+    return [line for line in (folder / file).read_text().splitlines() if not line.startswith("#")]
+
+
+def killed_and_resumed(scene: Scene, folder: Path) -> Path:
+    """A run in another process, killed amid its work, that goes on here."""
+    code = (
+        "import sys, json, lammps_inputs; from srd_driver import Simulation\n"
+        "scene = lammps_inputs.make_scene(sys.argv[2], **json.loads(sys.argv[3]))\n"
+        "Simulation(scene, 'md', sys.argv[1], checkpoint_interval=1.0).finish()"
+    )
+    words = [str(folder), scene.name, scene.model_dump_json()]
+    process = subprocess.Popen([sys.executable, "-c", code, *words], cwd=ROOT)
+    progress = folder / "progress.json"
+    while process.poll() is None:
+        if progress.exists() and json.loads(progress.read_text())["step"] > 0:
+            process.send_signal(signal.SIGKILL)
+        time.sleep(0.003)
+    assert process.returncode == -signal.SIGKILL, "killed before its end"
+    with Simulation(scene, "md", folder, resume=True) as simulation:
+        assert simulation.step > 0
+        simulation.finish()
+    return folder
+
+
+@pytest.mark.parametrize("thermostat", EXACT)
+def test_a_killed_run_goes_on_to_the_last_bit(thermostat: str, tmp_path: Path) -> None:
+    scene = lanes(thermostat=thermostat)
+    whole, again = finish(scene, tmp_path / "whole"), killed_and_resumed(scene, tmp_path / "killed")
+    for output in scene.system.outputs:
+        assert rows(whole, output.file) == rows(again, output.file), output.file
+    summary = analyze(again)
+    assert {key for key, entry in summary.items() if isinstance(entry, dict)} >= NUMBERS
+    assert summary["finished"]
+    assert summary["figures"] == ["colour_flow.png", "lane_order.png", "snapshot.png"]
+
+
+@pytest.mark.parametrize("thermostat", NOISE)
+def test_with_noise_a_killed_run_goes_on_with_other_noise(thermostat: str, tmp_path: Path) -> None:
+    scene = lanes(thermostat=thermostat)
+    whole, again = finish(scene, tmp_path / "whole"), killed_and_resumed(scene, tmp_path / "killed")
+    one, other = (rows(folder, "observables.dat") for folder in (whole, again))
+    assert [line.split()[0] for line in one] == [line.split()[0] for line in other]
+    assert one[0] == other[0]
+    assert one[-1] != other[-1]
+    summary = analyze(again)
+    assert {key for key, entry in summary.items() if isinstance(entry, dict)} >= NUMBERS
+
+
+@pytest.mark.parametrize("thermostat", ["kinetic", "configurational"])
+def test_a_sheared_run_is_killed_and_goes_on(thermostat: str, tmp_path: Path) -> None:
+    """Not to the last bit (docs/fix_isokinetic.md), but to the same flow."""
+    scene = shear(thermostat=thermostat)
+    whole, again = finish(scene, tmp_path / "whole"), killed_and_resumed(scene, tmp_path / "killed")
+    one, other = RunDirectory(whole), RunDirectory(again)
+    height = one.particles().positions[-1, :, 1] % one.width
+    for run in (one, other):
+        flow = np.polyfit(
+            (run.particles().positions[4:, :, 1] % run.width).ravel(),
+            run.particles().velocities[4:, :, 0].ravel(),
+            1,
+        )
+        assert flow[0] == pytest.approx(1.5, abs=0.1)  # the rate of the flow
+    assert height.max() < one.width
+    energies = [run.table()["potential_energy"][4:].mean() for run in (one, other)]
+    assert energies[0] == pytest.approx(energies[1], rel=0.1)
+    summary = analyze(again)
+    assert summary["shear_viscosity"]["value"] > 0
+    assert {"configurational_temperature", "pressure", "kinetic_temperature"} <= summary.keys()
+
+
+@pytest.mark.parametrize(
+    "scene",
+    [lanes(thermostat="kinetic"), lanes(thermostat="dpd"), shear(thermostat="configurational")],
+    ids=["kinetic", "dpd", "shear"],
+)
+def test_plain_lammps_on_two_ranks_is_the_same_run(
+    scene: Scene, tmp_path: Path, command: Run
+) -> None:
+    """Its first outputs: later, rounding has grown."""
+    whole = finish(scene, tmp_path / "whole")
+    file = tmp_path / "scene.toml"
+    file.write_text(scene.toml())
+    for ranks in (1, 2):
+        deck = tmp_path / f"lmp{ranks}"
+        command("narrows", "deck", scene.name, "--engine", "md", "--scene", file, "--out", deck)
+        launcher = ["mpirun", "-np", str(ranks)] if ranks > 1 else []
+        command(*launcher, "lmp", "-in", "in.lammps", "-var", "steps", "1000", cwd=deck)
+    serial = rows(tmp_path / "lmp1", "observables.dat")
+    assert serial == rows(whole, "observables.dat")[: len(serial)]
+    if "dpd" not in scene.toml():  # each process has its own noise
+        one, two = (
+            [float(word) for word in rows(tmp_path / f"lmp{n}", "observables.dat")[0].split()]
+            for n in (1, 2)
+        )
+        assert one == pytest.approx(two, rel=1e-3, abs=1e-3)
+
+
+def test_a_ladder_of_fields(tmp_path: Path) -> None:
+    """A run begins as another one ended; a first field is not there at rest."""
+    first = finish(lanes(), tmp_path / "first")
+    before = RunDirectory(first).particles()
+    scene = lanes(field=2.0, start=str(first), thermostat="configurational")
+    after = RunDirectory(finish(scene, tmp_path / "second")).particles()
+    lengths = np.array(scene.system.box.sizes)
+    moved = after.positions[0] - before.positions[-1]
+    np.testing.assert_allclose(moved - lengths * np.round(moved / lengths), 0, atol=1e-5)
+    np.testing.assert_allclose(after.velocities[0], before.velocities[-1], atol=1e-6)
+    assert (after.species == before.species).all()
+
+
+def test_at_rest_there_is_no_field(tmp_path: Path) -> None:
+    """The state after the rest does not depend on it, and is that of step 0."""
+    start = [
+        RunDirectory(finish(lanes(field=field, duration=0.25, equilibration=0), folder))
+        for field, folder in ((0.0, tmp_path / "none"), (3.0, tmp_path / "field"))
+    ]
+    one, other = (run.particles().positions[0] for run in start)
+    np.testing.assert_array_equal(one, other)
+
+
+def test_a_sweep_over_fields(tmp_path: Path) -> None:
+    fixed: dict[str, Any] = SMALL | {"duration": 1.0}
+    plan = sweep_definition.plan(tmp_path, "lanes", fixed, {"field": [0.5, 1.0]}, 1, "md")
+    assert run_all(sweep_definition.store(plan).runs, jobs=2) == []
+    assert RunDirectory(plan.runs[1].folder).acceleration("minus").tolist() == [-1.0, 0.0, 0.0]
+
+
+@pytest.mark.parametrize(("dimension", "number"), [(2, 896), (3, 1000)])
+def test_a_random_start_is_possible(dimension: int, number: int, tmp_path: Path) -> None:
+    fields = {"particles": None, "density": None, "start": "random", "dimension": dimension}
+    run = RunDirectory(finish(lanes(**fields, duration=0.25, equilibration=0), tmp_path / "run"))
+    assert len(run.particles().species) == number
+    assert np.isfinite(run.table()["potential_energy"]).all()
+
+
+FIXED = ("must be", "nearly square", "greater than", "less than", "valid", "unknown field")
+BAD: list[tuple[str, dict[str, Any], str]] = [
+    ("lanes", {"particles": 897}, "particles = 897: no nearly square crystal has so many disks"),
+    ("lanes", {"particles": 14}, "particles = 14: no nearly square crystal .* would do"),
+    ("lanes", {"particles": 12}, "particles = 12: leave a .* twice the range"),
+    ("lanes", {"particles": 0}, "particles = 0: should be greater than or equal to 2"),
+    ("lanes", {"particles": 999, "dimension": 3}, "particles = 999: must be even"),
+    ("lanes", {"density": 0}, "density = 0: should be greater than 0"),
+    ("lanes", {"density": 2.0}, "density = 2.0: should be less than or equal to 1.3"),
+    ("lanes", {"temperature": -1}, "temperature = -1: should be greater than 0"),
+    ("lanes", {"field": -1.0}, "field = -1.0: should be greater than or equal to 0"),
+    ("lanes", {"field": float("nan")}, "field = nan: should be a finite number"),
+    ("lanes", {"thermostat": "nose"}, "thermostat = 'nose': should be 'kinetic', 'kinetic_x'"),
+    ("lanes", {"dimension": 4}, "dimension = 4: should be 2 or 3"),
+    ("lanes", {"time_step": 0}, "time_step = 0: should be greater than 0"),
+    ("lanes", {"time_step": 0.05}, "time_step = 0.05: should be less than or equal to 0.01"),
+    ("lanes", {"time_step": 0.01, "temperature": 30}, "time_step = 0.01: too long for a temp"),
+    ("lanes", {"field": 900, "time_step": 0.001}, "time_step = 0.001: too long for a field of 900"),
+    ("lanes", {"thermostat": "configurational", "rest": 0}, "rest = 0.0: .* runs away from a latt"),
+    ("lanes", {"rest": -1}, "rest = -1: should be greater than or equal to 0"),
+    ("lanes", {"rest": 1e-4}, "rest = 0.0001: shorter than half a time step"),
+    ("lanes", {"friction": 0}, "friction = 0: should be greater than 0"),
+    ("lanes", {"thermostat": "dpd", "dpd_cutoff": 9}, "dpd_cutoff = 9.0: must be at most half"),
+    ("lanes", {"thermostat": "langevin", "seed": 2**30}, "seed = 1073741824: must be at most"),
+    ("lanes", {"damping": 0}, "damping = 0: should be greater than 0"),
+    ("lanes", {"duration": 0}, "duration = 0: should be greater than 0"),
+    ("lanes", {"rate": 1}, "rate = 1: unknown field; lanes has"),
+    ("shear", {"rate": 0}, "rate = 0: should be greater than 0"),
+    ("shear", {"rate": 60, "time_step": 0.002}, "time_step = 0.002: too long for a rate of 60"),
+    ("shear", {"thermostat": "kinetic_x"}, "thermostat = 'kinetic_x': should be 'kinetic' or"),
+    ("shear", {"thermostat": "configurational", "rest": 0}, "rest = 0.0: .* runs away"),
+    ("shear", {"start": "there"}, "start = 'there': should be 'crystal' or 'random'"),
+    ("shear", {"field": 1}, "field = 1: unknown field; shear has"),
+]
+
+
+@pytest.mark.parametrize(("name", "fields", "message"), BAD)
+def test_bad_input_is_named_in_one_line(name: str, fields: dict[str, Any], message: str) -> None:
+    with pytest.raises(SceneError, match=f"^{message}") as error:
+        make_scene(name, **(SMALL | fields))
+    assert all("\n" not in problem for problem in error.value.problems)
+
+
+@pytest.mark.parametrize("engine", ["mpc", "srd", "reference"])
+@pytest.mark.parametrize("scene", [lanes(), shear()], ids=["lanes", "shear"])
+def test_other_engines_refuse(scene: Scene, engine: str) -> None:
+    with pytest.raises(SceneError) as error:
+        check_engine(scene, engine)
+    text = str(error.value)
+    assert f"engine = '{engine}': it is a fluid" in text
+    assert "SoftDisk" in text
+    assert f"engine {engine} has no such motion" in text
+    assert "no rest before the run" in text
+
+
+def test_a_start_that_is_not_there_is_named(tmp_path: Path) -> None:
+    first = finish(lanes(duration=0.25, equilibration=0), tmp_path / "first")
+    for fields, reason in (
+        ({"start": str(tmp_path / "none")}, "No such file"),
+        ({"start": str(first), "density": 0.7}, "its box is .*, not"),
+        ({"start": str(first), "particles": 168}, "no whole frame of 168 particles"),
+    ):
+        with pytest.raises(SceneError, match=f"start of lanes: .*{reason}"):
+            finish(lanes(**fields), tmp_path / "second")
+    moved = finish(lanes(start=str(first), duration=0.25), tmp_path / "third")
+    (first / "trajectory.lammpsdump").unlink()
+    with Simulation(lanes(start=str(first), duration=0.5), "md", moved, resume=True) as simulation:
+        simulation.finish()  # a run needs its start no more once it is begun
+
+
+def test_a_step_too_long_for_the_field_is_named_when_it_shows(tmp_path: Path) -> None:
+    scene = lanes(thermostat="configurational", field=50.0, time_step=0.004, duration=50.0)
+    assert any("time_step = 0.004: long for a field of 50.0" in w for w in warnings(scene, "md"))
+    with pytest.raises(RunError, match=r"would move by .* too long for this field"):
+        finish(scene, tmp_path / "run")
