@@ -145,7 +145,7 @@ def _estimate(
     if name == "bayes":
         frames = len(coordinate.trajectory)
         lags = [lag for lag in (1, 2, 4, 8, 16, 32) if lag <= max(1, frames // 10)]
-        results = BayesianDiffusivity(coordinate, *ends, lags=lags).run().results
+        results = BayesianDiffusivity(coordinate, *ends, lags=lags, samples=0).run().results
         remark = f"lag {results.lag:g}, of {', '.join(f'{lag:g}' for lag in results.lags)}"
     elif name == "color":
         results = ColorDiffusivity(coordinate, *surfaces).run().results

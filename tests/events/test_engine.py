@@ -177,7 +177,7 @@ def test_chance_is_the_mean_label_over_lots() -> None:
         drawn = (q > 0.02) & (q < 0.98)
         assert drawn.sum() > 50
         assert np.array_equal((total / 400)[(q == 0) | (q == 1)], q[(q == 0) | (q == 1)])
-        deviation = ((total / 400 - q) / np.sqrt(q * (1 - q) / 400))[drawn]
+        deviation = (total / 400 - q)[drawn] / np.sqrt(q * (1 - q) / 400)[drawn]
         assert abs(deviation).max() < 5
         assert np.sqrt(np.mean(deviation**2)) == pytest.approx(1, abs=0.2)
 

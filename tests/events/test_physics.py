@@ -40,7 +40,7 @@ def fitted_contact(distance: Array, density: Array, reach: float) -> float:
     return float(np.exp(np.polyfit(distance[near], np.log(density[near]), 2)[2]))
 
 
-@pytest.mark.parametrize("packing", [0.2, 0.35])
+@pytest.mark.parametrize("packing", [0.2, pytest.param(0.35, marks=pytest.mark.statistics)])
 def test_equation_of_state_and_collision_rate(packing: float) -> None:
     """Blocks of the virial; the error is theirs."""
     engine, blocks = bulk(packing, 2000), []
