@@ -61,7 +61,7 @@ def sheared(rate: float, thermostat: str, quality: Quality) -> Scene:
     quick = quality == "quick"
     step = 0.001 if rate <= 10 else 0.0002
     if thermostat == "configurational" and rate > 1:
-        step = 0.0005
+        step = 0.0005 if rate <= 2 else 0.0002
     return make_scene(
         "shear",
         rate=rate,
