@@ -315,7 +315,7 @@ def test_an_unknown_measure_is_named(tmp_path: Path) -> None:
     with pytest.raises(RunDirectoryError) as error:
         analyze(tmp_path)
     assert str(error.value).startswith(
-        f"{tmp_path / 'manifest.json'}: measure colour: must be one of colloid_temperature, "
+        f"{tmp_path / 'manifest.json'}: measure colour: must be one of bond_order, "
     )
     assert not (tmp_path / "summary.json").exists()
 

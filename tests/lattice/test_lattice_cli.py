@@ -338,7 +338,7 @@ def test_too_many_sites_names_the_bytes(sites: int) -> None:
         (("--from", "2"), "given together"),
         (("--from", "9", "--times", "1"), r"must lie in 0\.\.4"),
         (("--from", "2", "--times", "1,x"), "numbers separated by commas"),
-        (("--from", "2", "--times", "-1"), "not negative"),
+        (("--from", "2", "--times", "-1"), "must be between 0 and"),
         (("--json", "/no/such/folder/out.json"), "No such file or directory"),
     ],
 )
