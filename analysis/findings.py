@@ -6,6 +6,9 @@ from typing import Any
 
 from matplotlib.figure import Figure
 
+from analysis.estimate import Estimate
+from analysis.run_directory import RunDirectory
+
 
 @dataclass(frozen=True)
 class Findings:
@@ -22,3 +25,20 @@ class Findings:
     figures: Mapping[str, Figure] = field(default_factory=dict)
     tables: Mapping[str, Mapping[str, Sequence[Any]]] = field(default_factory=dict)
     warnings: tuple[str, ...] = ()
+
+
+def in_si(run: RunDirectory, estimate: Estimate, length: int = 0, time: int = 0) -> dict[str, Any]:
+    """An entry with an estimate in reduced units and, where the run tells its units, in SI.
+
+    Args:
+        run: whose units.
+        estimate: in a0^length t0^time.
+        length, time: powers.
+    """
+    entry = estimate.as_json()
+    units = run.manifest.si_units
+    if units and estimate.value is not None:
+        si = estimate.scaled(units["a0"] ** length * units["t0"] ** time)
+        powers = [f"{name}^{power}" for name, power in (("m", length), ("s", time)) if power]
+        entry |= {"value_si": si.value, "error_si": si.error, "unit_si": " ".join(powers)}
+    return entry

@@ -21,6 +21,7 @@ def manifest(scene: Scene, engine: str) -> dict[str, Any]:
         "scene": scene.name,
         "fields": scene.model_dump(),
         "units": UNITS,
+        "si_units": scene.si_units,
         "system": _system(scene.system),
         "seeds": {"seed": scene.seed, **engine_named(engine).seeds(scene.seed, step=0)},
     }

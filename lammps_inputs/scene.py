@@ -16,6 +16,7 @@ from typing import Annotated, Any, ClassVar, Self
 import tomli_w
 from pydantic import BaseModel, ConfigDict, Field, ValidationError
 
+from lammps_inputs.comparison import Laboratory
 from lammps_inputs.system import System
 
 Positive = Annotated[float, Field(gt=0)]
@@ -76,6 +77,7 @@ class Scene(BaseModel, ABC):
     model_config = ConfigDict(frozen=True, extra="forbid", allow_inf_nan=False, strict=False)
 
     name: ClassVar[str]
+    si_fields: ClassVar[tuple[str, ...]] = ()  # which have bounds of their own
 
     duration: Positive = Field(description="simulated time after the equilibration [t0]")
     equilibration: NonNegative = Field(
@@ -104,10 +106,19 @@ class Scene(BaseModel, ABC):
             raise SceneError(problems)
         return scene
 
+    @classmethod
+    def of_laboratory(cls, **fields: Any) -> tuple[Self, Laboratory]:
+        """The scene that stands for a system of the laboratory, and what it keeps of it.
+
+        Raises:
+            SceneError: for wrong fields, or a scene that stands for none.
+        """
+        raise SceneError([f"scene {cls.name}: stands for nothing in the laboratory"])
+
     def _sizes(self) -> Iterator[str]:
         """A line for each number that is beyond what any scene could mean."""
         for field, value in self:
-            if isinstance(value, int | float) and value:
+            if isinstance(value, int | float) and value and field not in self.si_fields:
                 if abs(value) > LARGEST:
                     yield f"{field} = {shown(value)}: must be at most {LARGEST:g} in size"
                 elif abs(value) < SMALLEST:
@@ -117,6 +128,11 @@ class Scene(BaseModel, ABC):
     def system(self) -> System:
         """The system that the scene stands for: all that engines and measures know of it."""
         return self.build()
+
+    @property
+    def si_units(self) -> dict[str, float]:
+        """a0 [m], t0 [s], m_f [kg] and kBT [J], where the scene is of something in particular."""
+        return {}
 
     @abstractmethod
     def build(self) -> System:

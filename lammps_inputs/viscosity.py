@@ -111,6 +111,16 @@ def viscosity_random_axis(density: float, collision_time: float, alpha: float) -
     )
 
 
+def self_diffusion_2d(density: float, collision_time: float, angle: float) -> float:
+    """Of the fluid's own particles in 2D, if their velocities decorrelate as theory has it.
+
+    kBT tau_c (1 / (p (1 - cos alpha)) - 1 / 2), p the colliding part of the particles (Ihle and
+    Kroll, Phys. Rev. E 67, 066706, 2003); [a0^2/t0].
+    """
+    decay = _colliding(density) * (1 - math.cos(math.radians(angle)))
+    return collision_time * (1 / decay - 0.5)
+
+
 def _colliding(density: float) -> float:
     """(M - 1 + e^-M) / M, the mean of 1 - 1/n over the particles of Poisson cells."""
     if density < 1e-4:  # where the difference has no digits left

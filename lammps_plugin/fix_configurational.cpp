@@ -40,6 +40,7 @@ FixConfigurational::FixConfigurational(LAMMPS *lmp, int narg, char **arg) :
   comm_reverse = 6;
   maxexchange = 3;
   FixConfigurational::grow_arrays(atom->nmax);
+  for (int i = 0; i < atom->nlocal; ++i) FixConfigurational::set_arrays(i);
   atom->add_callback(Atom::GROW);
   atom->add_callback(Atom::RESTART);
 }

@@ -13,6 +13,7 @@ from narrows.commands.reproduce import reproduce
 from narrows.commands.run import run
 from narrows.commands.status import status
 from narrows.commands.sweep import sweep
+from narrows.commands.units import units
 
 app = typer.Typer(
     no_args_is_help=True,
@@ -20,7 +21,7 @@ app = typer.Typer(
     pretty_exceptions_enable=False,
     help="Particles driven through narrow spaces: scenes, LAMMPS decks, runs and their analysis.",
 )
-for command in (deck, run, sweep, status, analyze, diffusivity, reproduce):
+for command in (deck, run, sweep, status, analyze, diffusivity, reproduce, units):
     app.command()(command)
 app.add_typer(lattice_app, name="lattice")
 

@@ -2,7 +2,7 @@
 
 import sys
 from collections.abc import Iterable, Iterator
-from contextlib import contextmanager
+from contextlib import contextmanager, suppress
 
 import typer
 
@@ -50,6 +50,8 @@ def user_errors() -> Iterator[None]:
     except KeyboardInterrupt as interrupt:
         advice = str(interrupt) or "go on from the newest checkpoint by --resume"
         complain(f"interrupted: {advice}")
+        if not interrupt.args:
+            _end_other_processes()
         raise typer.Exit(130) from None
 
 
@@ -57,6 +59,13 @@ def complain(text: str) -> None:
     """Say what is wrong, on the first process only."""
     if _first_process():
         print(printable(f"narrows: {text}"), file=sys.stderr, flush=True)
+
+
+def _end_other_processes() -> None:
+    """A signal met this process alone, before or after the run: the others would wait for it."""
+    with suppress(RunError):
+        if communicator().size > 1:
+            communicator().Abort(130)
 
 
 def _first_process() -> bool:

@@ -191,6 +191,7 @@ class Manifest(Part):
     scene: Annotated[str, Field(max_length=100)]
     fields: dict[str, Any]
     units: dict[str, str]
+    si_units: dict[str, Positive] = Field(default_factory=dict)  # a0, t0, m_f, kBT, or none
     system: System
     seeds: dict[str, int]
     versions: dict[str, str] = Field(default_factory=dict)

@@ -13,6 +13,7 @@ import pytest
 
 import lammps_plugin
 from analysis import RunDirectory, analyze
+from analysis.estimate import Estimate
 from lammps_inputs import Scene, SceneError, make_scene
 from lammps_inputs.deck import check_engine, warnings
 from srd_driver import RunError, Simulation, sweep_definition
@@ -196,7 +197,6 @@ def test_a_random_start_is_possible(dimension: int, number: int, tmp_path: Path)
     assert np.isfinite(run.table()["potential_energy"]).all()
 
 
-FIXED = ("must be", "nearly square", "greater than", "less than", "valid", "unknown field")
 BAD: list[tuple[str, dict[str, Any], str]] = [
     ("lanes", {"particles": 897}, "particles = 897: no nearly square crystal has so many disks"),
     ("lanes", {"particles": 14}, "particles = 14: no nearly square crystal .* would do"),
@@ -266,8 +266,43 @@ def test_a_start_that_is_not_there_is_named(tmp_path: Path) -> None:
         simulation.finish()  # a run needs its start no more once it is begun
 
 
+def test_a_flow_that_begins_too_suddenly_is_warned_of_and_stops_by_name(tmp_path: Path) -> None:
+    scene = make_scene(
+        "shear", rate=35.0, thermostat="configurational", rest=2.0, sampling_interval=0.1
+    )
+    assert any("rate = 35.0: the flow begins at once" in text for text in warnings(scene, "md"))
+    with pytest.raises(RunError, match=r"would move by .* too long for this field"):
+        finish(scene, tmp_path / "run")
+
+
 def test_a_step_too_long_for_the_field_is_named_when_it_shows(tmp_path: Path) -> None:
     scene = lanes(thermostat="configurational", field=50.0, time_step=0.004, duration=50.0)
     assert any("time_step = 0.004: long for a field of 50.0" in w for w in warnings(scene, "md"))
     with pytest.raises(RunError, match=r"would move by .* too long for this field"):
         finish(scene, tmp_path / "run")
+
+
+@pytest.mark.statistics
+@pytest.mark.parametrize("thermostat", [*EXACT[1:], *NOISE])
+def test_one_equilibrium(thermostat: str, tmp_path: Path) -> None:
+    """Without a field, n = 1.03: as under the kinetic thermostat, T_kin = T_conf = T, 4 errors."""
+    found = {}
+    for name in ("kinetic", thermostat):
+        scene = make_scene(
+            "lanes",
+            field=0.0,
+            thermostat=name,
+            sampling_interval=1.0,
+            equilibration=20.0,
+            duration=100.0,
+        )
+        found[name] = analyze(finish(scene, tmp_path / name))
+    for key in ("potential_energy", "pressure", "bond_order"):
+        here, there = (Estimate.of_json(summary[key]) for summary in found.values())
+        print(thermostat, key, here, there)
+        assert abs(here.deviation(there)) < 4, key
+    for key in ("kinetic_temperature", "configurational_temperature"):
+        of = Estimate.of_json(found[thermostat][key])
+        print(thermostat, key, of)
+        finite = 2 / 896  # momentum, and a constraint: terms of order 1/N
+        assert abs(of.number - 1) <= 4 * of.standard_error + finite, key

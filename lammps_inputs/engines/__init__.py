@@ -12,6 +12,7 @@ from lammps_inputs.scene import SceneError
 from lammps_inputs.system import System
 
 DEFAULT = "mpc"
+WITHOUT_SOLVENT = "md"
 
 
 @cache

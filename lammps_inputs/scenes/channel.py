@@ -2,16 +2,18 @@
 
 import math
 from collections.abc import Iterator
-from typing import Annotated, Any, ClassVar
+from typing import Annotated, Any, ClassVar, Self
 
-from pydantic import Field, field_validator
+from pydantic import Field, ValidationError, field_validator
 
+from lammps_inputs.comparison import Laboratory
 from lammps_inputs.fluid_scene import FluidScene
 from lammps_inputs.limits import SOUND
 from lammps_inputs.placement import Row
 from lammps_inputs.potentials.integrated_wall import IntegratedWall
 from lammps_inputs.potentials.repulsive_mie import RepulsiveMie
-from lammps_inputs.scene import NonNegative, Positive
+from lammps_inputs.scene import NonNegative, Positive, SceneError
+from lammps_inputs.slit_laboratory import SlitLaboratory
 from lammps_inputs.system import (
     FLUID,
     FLUID_AVERAGES,
@@ -24,8 +26,9 @@ from lammps_inputs.system import (
     System,
     slit,
 )
-from lammps_inputs.viscosity import viscosity
+from lammps_inputs.viscosity import self_diffusion_2d, viscosity
 
+MOBILITY = 0.13  # speed over force, times n_f nu, at 40 x 10
 MACH = 0.08  # at 0.1 colloids settle 10 % faster than in proportion to gravity
 
 
@@ -68,6 +71,46 @@ class Channel(FluidScene):
     def _no_spacing(cls, value: Any) -> Any:
         return None if value == "none" else value
 
+    @classmethod
+    def of_laboratory(cls, **fields: Any) -> tuple[Self, Laboratory]:
+        """The channel of a `SlitLaboratory`; other fields are the scene's.
+
+        Raises:
+            SceneError: for wrong fields.
+        """
+        known = {name: fields.pop(name) for name in SlitLaboratory.model_fields if name in fields}
+        try:
+            real = SlitLaboratory(**known)
+        except ValidationError as error:
+            raise SceneError(cls._field_problems(error)) from None
+        if real.particle_density <= real.fluid_density:
+            raise SceneError.of_field(
+                "particle_density", real.particle_density, "must be more than that of the fluid"
+            )
+        for field in ("length", "width", "gravity"):
+            if field in fields:
+                raise SceneError.of_field(field, fields[field], "follows from the laboratory")
+        radius = cls.make(**fields).colloid_radius
+        edge = real.particle_radius / radius
+        size = {
+            "length": float(round(real.channel_length / edge)),
+            "width": real.channel_width / edge,
+        }
+        scene = cls.make(**fields, **size, gravity=0.0)
+        pull = real.peclet / radius
+        scene = cls.make(**fields, **size, gravity=pull / scene.colloid_mass)
+        nu = viscosity(scene.density, scene.collision_time, scene.angle)
+        mobility = MOBILITY / (scene.density * nu)
+        self_diffusion = self_diffusion_2d(scene.density, scene.collision_time, scene.angle)
+        flight = scene.collision_time  # at the thermal speed 1
+        rows = real.rows(radius, mobility, nu, pull, flight, self_diffusion)
+        unit, energy = real.time_unit(radius, mobility), real.suspension.thermal_energy
+        units = {"a0": edge, "t0": unit, "kBT": energy, "m_f": energy * (unit / edge) ** 2}
+        lost: tuple[str, ...] = ()
+        if mobility * pull > nu / radius:
+            lost = ("the Reynolds number is above 1: the fluid is no longer creeping",)
+        return scene, Laboratory(rows, units, lost)
+
     @property
     def colloid_mass(self) -> float:
         """M_c = pi r_c^2 n_f, the mass of the fluid a colloid displaces (3.4.1) [m_f]."""
@@ -80,7 +123,7 @@ class Channel(FluidScene):
         An estimate, within a factor of two for other sizes.
         """
         nu = viscosity(self.density, self.collision_time, self.angle)
-        return 0.13 * math.pi * self.colloid_radius**2 * abs(self.gravity) / nu
+        return MOBILITY * math.pi * self.colloid_radius**2 * abs(self.gravity) / nu
 
     @property
     def colloid_colloid(self) -> RepulsiveMie:

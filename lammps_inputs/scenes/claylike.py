@@ -4,10 +4,12 @@ import math
 from collections.abc import Iterator
 from dataclasses import replace
 from functools import cached_property
-from typing import Annotated, Any, ClassVar, Literal
+from typing import Annotated, Any, ClassVar, Literal, Self
 
 from pydantic import BeforeValidator, Field, ValidationError, model_validator
 
+from lammps_inputs.comparison import Laboratory
+from lammps_inputs.laboratory import suspension_rows
 from lammps_inputs.limits import SOUND, solvent_warnings
 from lammps_inputs.material import Model, Suspension
 from lammps_inputs.placement import Lattice, lattice_cells
@@ -51,7 +53,7 @@ def _quantity(unit: str) -> BeforeValidator:
     return BeforeValidator(lambda value: si(value, unit))
 
 
-Length = Annotated[float, _quantity("m"), Field(gt=0)]
+Length = Annotated[float, _quantity("m"), Field(ge=1e-10, le=1)]
 
 
 class Claylike(Scene):
@@ -65,6 +67,9 @@ class Claylike(Scene):
     """
 
     name: ClassVar[str] = "claylike"
+    si_fields: ClassVar[tuple[str, ...]] = (
+        *("radius", "cell_edge", "kappa", "hamaker", "temperature", "viscosity"),
+    )
 
     cells: Annotated[int, Field(ge=2, le=1000)] = Field(
         default=15, description="edge of the cubic box in collision cells"
@@ -106,13 +111,13 @@ class Claylike(Scene):
     volume_fraction: Annotated[float, Field(gt=0, lt=0.74)] = Field(
         default=0.14, description="of the colloids, phi"
     )
-    kappa: Annotated[float, _quantity("1/m"), Field(gt=0)] = Field(
+    kappa: Annotated[float, _quantity("1/m"), Field(ge=1, le=1e12)] = Field(
         default=2e8, description="inverse screening length [1/m]"
     )
     surface_potential: Annotated[float, _quantity("V"), Field(ge=0, le=1)] = Field(
         default=0.02, description="effective surface potential Psi_0 [V]"
     )
-    hamaker: Annotated[float, _quantity("J"), Field(gt=0)] = Field(
+    hamaker: Annotated[float, _quantity("J"), Field(ge=1e-26, le=1e-12)] = Field(
         default=4.76e-20, description="Hamaker constant A_H [J]"
     )
     minimum_depth: Positive = Field(
@@ -124,7 +129,7 @@ class Claylike(Scene):
     friction: NonNegative = Field(
         default=10.0, description="of surfaces in contact, across and along (6) [m_f/t0]"
     )
-    temperature: Annotated[float, _quantity("K"), Field(gt=0)] = Field(
+    temperature: Annotated[float, _quantity("K"), Field(ge=0.1, le=1e5)] = Field(
         default=300.0, description="temperature of the suspension T [K]"
     )
     particle_density: Annotated[float, _quantity("kg/m^3"), Field(gt=0)] = Field(
@@ -133,7 +138,7 @@ class Claylike(Scene):
     fluid_density: Annotated[float, _quantity("kg/m^3"), Field(gt=0)] = Field(
         default=1000.0, description="mass density of the liquid rho_w [kg/m^3]"
     )
-    viscosity: Annotated[float, _quantity("m^2/s"), Field(gt=0)] = Field(
+    viscosity: Annotated[float, _quantity("m^2/s"), Field(ge=1e-12, le=1e3)] = Field(
         default=1e-6, description="kinematic viscosity of the liquid nu [m^2/s]"
     )
     peclet: NonNegative = Field(
@@ -178,6 +183,22 @@ class Claylike(Scene):
                 raise ValueError(f"{name}: {error}") from None
         return given | times
 
+    @classmethod
+    def of_laboratory(cls, **fields: Any) -> tuple[Self, Laboratory]:
+        """The suspension of these fields; without `peclet` it settles on Earth.
+
+        Raises:
+            SceneError: for wrong fields.
+        """
+        scene = cls.make(**fields)
+        on_earth = scene.model.suspension.time_scales().peclet
+        if "peclet" not in fields:
+            scene = cls.make(**fields, peclet=on_earth)
+        pulled = replace(scene.model.suspension, gravity=9.81 * scene.peclet / on_earth)
+        model = replace(scene.model, suspension=pulled)
+        lost = tuple(model.time_scales().lost_order())
+        return scene, Laboratory(suspension_rows(model), scene.si_units, lost)
+
     @property
     def edge(self) -> float:
         """Of a collision cell, a0 [m]."""
@@ -215,6 +236,16 @@ class Claylike(Scene):
             none = replace(full, coulomb=0.0, hamaker=0.0, hertz=0.0, friction=0.0, damping=0.0)
             return none if lubrication else None
         return full
+
+    @property
+    def si_units(self) -> dict[str, float]:
+        """Of the simulation, whose kBT is not that of the laboratory."""
+        return {
+            "a0": self.model.cell,
+            "t0": self.model.time_unit,
+            "m_f": self.model.fluid_mass,
+            "kBT": self.model.thermal_energy,
+        }
 
     @property
     def sphere_volume(self) -> float:
@@ -287,7 +318,17 @@ class Claylike(Scene):
                 drift_interval=0 if walls or self.hydrodynamics == "bath" else DRIFT_INTERVAL,
             ),
             outputs=(TRAJECTORY, FLUID_PROFILE, SUSPENSION_AVERAGES),
-            measures=("fluid_temperature", "colloid_temperature"),
+            measures=(
+                "fluid_temperature",
+                "colloid_temperature",
+                "rotational_temperature",
+                "sedimentation",
+                "suspension_diffusion",
+                "velocity_distribution",
+                *(("clusters",) if self.colloids > 1 else ()),
+                *(("radial_distribution",) if self.colloids > 1 and not walls else ()),
+                *(("shear_flow",) if self.shear_rate else ()),
+            ),
         )
 
     def problems(self) -> Iterator[str]:

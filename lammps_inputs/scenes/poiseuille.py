@@ -11,6 +11,10 @@ from lammps_inputs.scene import NonNegative, Positive
 from lammps_inputs.system import FLUID, FLUID_AVERAGES, FLUID_PROFILE, Box, Drive, System, slit
 from lammps_inputs.viscosity import viscosity
 
+HEAT = 0.55  # temperature that friction adds, over the square of the speed on the mid-line
+WARM = 0.02  # of the temperature: what is worth a word
+REYNOLDS = 2600.0  # by half the width, above which waves live in a plane channel flow
+
 
 class Poiseuille(FluidScene):
     """A 2D slit of pure fluid, periodic along x, gravity on the fluid; defaults of Fig. 3.6."""
@@ -49,4 +53,28 @@ class Poiseuille(FluidScene):
                 f"gravity = {self.gravity!r}: the fluid would flow at about "
                 f"{self.expected_speed:.2g}, faster than its sound ({SOUND:g}); must be between "
                 f"{-largest:.2g} and {largest:.2g}"
+            )
+
+    def warnings(self) -> Iterator[str]:
+        yield from super().warnings()
+        if self.hydrodynamics != "on":
+            return
+        fastest = 1.5 * self.expected_speed  # on the mid-line
+        if fastest > SOUND:
+            yield (
+                f"gravity = {self.gravity!r}: on the mid-line the fluid would flow at about "
+                f"{fastest:.2g}, faster than its sound ({SOUND:g})"
+            )
+        heat = HEAT * fastest**2
+        if self.thermostat == "none" and heat > WARM:
+            yield (
+                f"gravity = {self.gravity!r}, thermostat = 'none': friction heats the fluid by "
+                f"about {heat:.0%}; the viscosity is then another"
+            )
+        nu = viscosity(self.density, self.collision_time, self.angle)
+        reynolds = fastest * self.width / 2 / nu
+        if reynolds > REYNOLDS:
+            yield (
+                f"gravity = {self.gravity!r}: the Reynolds number of {reynolds:.2g} is above "
+                f"{REYNOLDS:g}, where the flow need not be laminar"
             )

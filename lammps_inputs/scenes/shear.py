@@ -18,6 +18,7 @@ from lammps_inputs.system import (
 )
 
 STRAIN = 0.05  # of the box in a step, at most
+SUDDEN = {"kinetic": 20.0, "configurational": 4.0}  # rates that runs of 1000 spheres have outlived
 
 
 class Shear(SoftScene):
@@ -89,4 +90,14 @@ class Shear(SoftScene):
             yield (
                 f"rest = {self.rest!r}: the configurational thermostat runs away from a lattice; "
                 "let it melt at rest first, for about 20"
+            )
+
+    def warnings(self) -> Iterator[str]:
+        yield from super().warnings()
+        largest = SUDDEN[self.thermostat]
+        if self.rate > largest:
+            yield (
+                f"rate = {self.rate!r}: the flow begins at once, and heats the particles faster "
+                f"than the {self.thermostat} thermostat cools them; above {largest:g} runs have "
+                "stopped, with steps down to 0.0001"
             )

@@ -15,7 +15,7 @@ namespace mpc {
 constexpr char FLUID_FILE[8] = {'m', 'p', 'c', 'f', 'l', 'u', 'i', 'd'};
 constexpr char RESTART[8] = {'m', 'p', 'c', 's', 't', 'a', 't', 'e'};
 
-// FNV-1a by words of 8 bytes: any word that changes changes it.
+// By words of 8 bytes, each step one-to-one: any word that changes changes it.
 class Checksum {
  public:
   void add(const void *data, std::size_t bytes)
@@ -24,7 +24,8 @@ class Checksum {
     for (; bytes >= sizeof(std::uint64_t); bytes -= sizeof(std::uint64_t)) {
       std::uint64_t word;
       std::memcpy(&word, next, sizeof word);
-      value_ = (value_ ^ word) * 0x100000001b3;
+      value_ = (value_ ^ word) * 0x9e3779b97f4a7c15;
+      value_ ^= value_ >> 32;    // else two changes of highest bits cancel
       next += sizeof word;
     }
   }

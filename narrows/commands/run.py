@@ -50,7 +50,7 @@ def run(
                 say(f"{out}: going on from time {simulation.time:g}")
             finish_with_progress(simulation)
             if not simulation.finished:
-                raise KeyboardInterrupt
+                raise KeyboardInterrupt("go on from the newest checkpoint by --resume")
             say(f"{out}: at time {simulation.time:g}; next: narrows analyze {out}")
 
 

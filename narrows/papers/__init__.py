@@ -8,6 +8,7 @@
 | `page` | `index.html` |
 | `drawing` | the look of the figures |
 | `tabatabaei_2009` | the thesis on colloids in a narrow channel |
+| `hecht_2005` | claylike colloids |
 """
 
 import importlib

@@ -150,6 +150,7 @@ def kills(count: int, chance: random.Random, folder: Path, names: list[str]) -> 
             assert is_begun(directory)
             assert read_progress(directory).finished
         shutil.rmtree(directory)
+        print(f"run {number}, {name}: {sum(done.values())} kills so far", flush=True)
     return done
 
 

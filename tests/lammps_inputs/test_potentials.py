@@ -13,6 +13,8 @@ from scipy.optimize import minimize_scalar
 
 from lammps_inputs.potentials.integrated_wall import IntegratedWall
 from lammps_inputs.potentials.repulsive_mie import RepulsiveMie
+from lammps_inputs.potentials.soft_disk import SoftDisk
+from lammps_inputs.potentials.weeks_chandler_andersen import WeeksChandlerAndersen
 from srd_driver.parallel import communicator
 
 COLLOID_COLLOID = RepulsiveMie(sigma=4.0, exponent=24)
@@ -104,8 +106,13 @@ def test_exact_and_tabulated_wall_are_those_of_lammps(lammps: Any, tmp_path: Pat
                 assert_allclose(force, WALL.force(distance), atol=bound * scale, rtol=0)
 
 
-@pytest.mark.parametrize("potential", [COLLOID_COLLOID, COLLOID_FLUID, WALL])
-def test_force_is_minus_the_slope_of_the_energy(potential: RepulsiveMie | IntegratedWall) -> None:
+@pytest.mark.parametrize(
+    "potential",
+    [COLLOID_COLLOID, COLLOID_FLUID, WALL, SoftDisk(1.1, 0.8), WeeksChandlerAndersen(1.2, 1.3)],
+)
+def test_force_is_minus_the_slope_of_the_energy(
+    potential: RepulsiveMie | IntegratedWall | SoftDisk | WeeksChandlerAndersen,
+) -> None:
     r = np.linspace(0.7 * potential.sigma, 0.9999 * potential.cutoff, 50)
     step = 1e-6
     slope = (potential.energy(r + step) - potential.energy(r - step)) / (2 * step)

@@ -36,7 +36,9 @@ def test_deck_driver_and_resumed_run_are_the_same(
         settings = [word for pair in fields.items() for word in ("--set", "{}={}".format(*pair))]
         command("narrows", "deck", "claylike", *settings, "--out", deck)
         launcher = ["mpirun", "-np", str(ranks)] if ranks > 1 else []
-        command(*launcher, "lmp", "-in", "in.lammps", cwd=deck)
+        clock = scene.system.clock
+        steps = 4 * clock.sample_steps if ranks > 1 else clock.total_steps
+        command(*launcher, "lmp", "-in", "in.lammps", "-var", "steps", str(steps), cwd=deck)
     with Simulation(scene, "mpc", tmp_path / "whole") as simulation:
         simulation.finish()
     same_bytes(tmp_path / "whole", tmp_path / "lmp1", scene)
@@ -45,9 +47,16 @@ def test_deck_driver_and_resumed_run_are_the_same(
 
     one, two = (RunDirectory(tmp_path / f"lmp{ranks}").particles() for ranks in (1, 2))
     np.testing.assert_allclose(one.positions[:3], two.positions[:3], rtol=0, atol=1e-7)
-    summary = analyze(tmp_path / "lmp2")
+    summary = analyze(tmp_path / "lmp1")
     assert summary["finished"]
-    assert {"temperature", "colloid_temperature"} <= summary.keys()
+    expected = {"settling_speed", "diffusion", "clusters", "rotational_temperature"}
+    assert expected | {"temperature", "colloid_temperature"} <= summary.keys()
+    assert ("shear_flow" in summary) == ("shear_rate" in fields)
+    assert summary["settling_speed"].keys() == {
+        *("zero_momentum", "relative_to_fluid", "zero_volume_flux"),
+    }
+    assert summary["diffusion"].keys() == {"msd", "green_kubo", "infinite_box"}
+    assert {"largest", "number", "bonds_per_colloid"} <= summary["clusters"].keys()
 
 
 def test_total_momentum_stays_zero_while_colloids_settle(tmp_path: Path) -> None:

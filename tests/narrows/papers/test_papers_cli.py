@@ -9,10 +9,7 @@ from narrows.cli import app
 @pytest.mark.parametrize(
     ("words", "message"),
     [
-        (
-            ["tabatabaei-2010"],
-            "'tabatabaei-2010' is not known; there is carmer-2012, tabatabaei-2009",
-        ),
+        (["tabatabaei-2010"], "'tabatabaei-2010' is not known; there is carmer-2012, "),
         (["tabatabaei-2009", "4.2"], "figure '4.2': tabatabaei-2009 has 2.1, 2.2, 3.6"),
     ],
 )

@@ -1,0 +1,50 @@
+"""Diffusion of colloids in all directions, and what it is without the images of the box."""
+
+from matplotlib.figure import Figure
+
+from analysis.estimate import Estimate
+from analysis.findings import Findings, in_si
+from analysis.measures.settling_speed import sampled_frames
+from analysis.run_directory import RunDirectory
+from analysis.suspension_diffusion import (
+    TERMS,
+    SuspensionDiffusion,
+    infinite_box,
+    suspension_diffusion,
+)
+
+
+def measure(run: RunDirectory) -> Findings:
+    """D by the mean squared displacement, by Green and Kubo, and in an infinite box."""
+    solvent, positions = run.solvent, run.particles().positions[sampled_frames(run)]
+    longest = TERMS * solvent.collision_time
+    try:
+        found = suspension_diffusion(positions, run.interval, longest)
+    except ValueError as error:
+        none = Estimate(None, None, str(error)).as_json()
+        return Findings({"diffusion": dict.fromkeys(("msd", "green_kubo", "infinite_box"), none)})
+    if solvent.viscosity_theory is None:
+        infinite = Estimate(None, None, "there are no hydrodynamics between images")
+    elif not all(run.box.periodic):
+        infinite = Estimate(None, None, "the correction is that of a periodic box")
+    else:
+        eta = solvent.density * solvent.viscosity_theory
+        infinite = infinite_box(found.from_msd, eta, run.length)
+    known = {"msd": found.from_msd, "green_kubo": found.green_kubo, "infinite_box": infinite}
+    entry = {name: in_si(run, each, length=2, time=-1) for name, each in known.items()}
+    return Findings({"diffusion": entry}, {"diffusion.png": draw(found)})
+
+
+def draw(found: SuspensionDiffusion) -> Figure:
+    """Mean squared displacement, and the sum of (35) by where it ends."""
+    figure = Figure(figsize=(9, 4), layout="constrained")
+    left, right = figure.subplots(1, 2)
+    left.plot(found.times, found.msd, "o-", markersize=3)
+    left.set_xlabel("lag [$t_0$]")
+    left.set_ylabel("mean squared displacement in a direction [$a_0^2$]")
+    right.plot(found.times, found.integral, "o-", markersize=3, label="(35) up to the lag")
+    right.axhline(found.from_msd.value or 0.0, color="0.5", label="from the displacement")
+    right.set_xlabel("lag [$t_0$]")
+    right.set_ylabel("diffusion coefficient [$a_0^2/t_0$]")
+    right.legend()
+    return figure

@@ -1,0 +1,88 @@
+"""The runs behind the figures of lane formation, and what their summaries say.
+
+The paper runs 5000 time units twice at each field, from the field before; here each begins at rest,
+from a crystal, and is shorter. docs/reproduce.md says what that costs.
+"""
+
+from collections.abc import Iterable, Sequence
+
+from analysis.analyze import summary_of
+from analysis.estimate import Estimate
+from lammps_inputs import Scene, make_scene
+from narrows.papers.figure import Directories, Quality
+
+CRYSTAL = 1.03
+FLUID = 0.75
+LARGEST = 10.0  # field of a configurational run
+THERMOSTATS = {
+    "kinetic": "kinetic energy",
+    "configurational": "configurational temperature",
+    "kinetic_x": "kinetic energy along the field",
+    "kinetic_y": "kinetic energy across it",
+}
+
+
+def disks(density: float, field: float, thermostat: str, quality: Quality) -> Scene:
+    """896 soft disks in a field."""
+    quick = quality == "quick"
+    equilibration, duration = (150.0, 100.0) if thermostat == "kinetic" else (50.0, 50.0)
+    step = 0.001
+    if thermostat == "configurational" and field > 4:
+        step = 0.0005  # 0.001 is too long at the paper's highest fields
+    return make_scene(
+        "lanes",
+        density=density,
+        field=field,
+        thermostat=thermostat,
+        time_step=step,
+        sampling_interval=2.0 if quick else 5.0,
+        equilibration=equilibration if quick else 1500.0,
+        duration=duration if quick else 1500.0,
+    )
+
+
+def spheres(field: float, thermostat: str, quality: Quality) -> Scene:
+    """1000 Weeks-Chandler-Andersen spheres in a field."""
+    quick = quality == "quick"
+    return make_scene(
+        "lanes",
+        dimension=3,
+        field=field,
+        thermostat=thermostat,
+        time_step=0.001 if thermostat == "kinetic" or field < 4 else 0.0005,
+        sampling_interval=2.0 if quick else 5.0,
+        equilibration=40.0 if quick else 600.0,
+        duration=40.0 if quick else 600.0,
+    )
+
+
+def sheared(rate: float, thermostat: str, quality: Quality) -> Scene:
+    """1000 of the spheres, sheared; the step is one that outlives the sudden start of the flow."""
+    quick = quality == "quick"
+    step = 0.001 if rate <= 10 else 0.0002
+    if thermostat == "configurational" and rate > 1:
+        step = 0.0005 if rate <= 2 else 0.0002
+    return make_scene(
+        "shear",
+        rate=rate,
+        thermostat=thermostat,
+        time_step=step,
+        sampling_interval=0.5,
+        equilibration=10.0 if quick else 100.0,
+        duration=15.0 if quick else 200.0,
+    )
+
+
+def number(directories: Directories, scene: Scene, key: str) -> Estimate:
+    """A number of the run's summary, `lane_order` for one."""
+    return Estimate.of_json(summary_of(directories[scene].path)[key])
+
+
+def numbers(directories: Directories, scenes: Iterable[Scene], key: str) -> list[Estimate]:
+    """The same number of several runs."""
+    return [number(directories, scene, key) for scene in scenes]
+
+
+def largest(values: Sequence[Estimate]) -> Estimate:
+    """The one with the largest value."""
+    return max(values, key=lambda each: -1.0 if each.value is None else each.value)

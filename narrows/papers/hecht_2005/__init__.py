@@ -1,0 +1,23 @@
+"""Tables and figures of M. Hecht et al., Simulation of claylike colloids (2005).
+
+| module | figures |
+|---|---|
+| `laboratory` | Tables I to IV and the numbers of section VII |
+| `potentials` | 1, the DLVO potentials |
+| `settling` | 3 and 4, diffusion and the settling speed against the volume fraction |
+| `structure` | 5 and 6, g(r) of clusters and of a suspension |
+
+Runs are coupling II with R = 0.25 um, a0 = 0.4 um, M = 60 in (6 um)^3. Units: a0 = kBT = m_f = 1.
+"""
+
+from lammps_inputs.engines import DEFAULT
+from narrows.papers.figure import Paper
+from narrows.papers.hecht_2005 import laboratory, potentials, settling, structure
+
+PAPER = Paper(
+    "hecht-2005",
+    "Hecht et al. (2005): claylike colloids",
+    (*laboratory.FIGURES, *potentials.FIGURES, *settling.FIGURES, *structure.FIGURES),
+    engine=DEFAULT,
+    units="a0 = kBT = m_f = 1, t0 = a0 sqrt(m_f / kBT); SI where it says so",
+)

@@ -1,0 +1,136 @@
+"""Settling frames, diffusion, clusters, g(r) and normality of suspensions against known cases."""
+
+import math
+
+import numpy as np
+import pytest
+from scipy.sparse import coo_matrix
+from scipy.sparse.csgraph import connected_components
+
+from analysis.clusters import cluster_series, labels
+from analysis.estimate import Estimate
+from analysis.normality import FALSE_ALARMS, normality
+from analysis.radial_distribution import radial_distribution
+from analysis.sedimentation import richardson_zaki, settling_speeds
+from analysis.suspension_diffusion import infinite_box, suspension_diffusion
+from tests.analysis.known import known
+
+BOX = (9.0, 9.0, 9.0)
+
+
+def test_settling_speeds_are_those_of_their_frames() -> None:
+    """Each is the colloids' velocity in the frame where what names it is at rest."""
+    random = np.random.default_rng(1)
+    colloids, fluid = random.normal(size=(2, 50))
+    phi, masses = 0.2, (3.0, 5.0)  # of all colloids, of all fluid
+    mean = (masses[0] * colloids + masses[1] * fluid) / sum(masses)
+    speeds = settling_speeds(colloids, fluid, mean, phi)
+    for frame in (0.0, 0.7):  # all are the same from a frame that moves
+        moving = settling_speeds(colloids + frame, fluid + frame, mean + frame, phi)
+        for name, series in vars(speeds).items():
+            np.testing.assert_allclose(getattr(moving, name), series, atol=1e-14)
+    flux = phi * colloids + (1 - phi) * fluid
+    np.testing.assert_allclose(speeds.zero_volume_flux, colloids - flux, atol=1e-14)
+
+
+def test_richardson_zaki_finds_the_exponent() -> None:
+    phi = np.array([0.02, 0.07, 0.14, 0.21])
+    random = np.random.default_rng(2)
+
+    def speeds(noise: float) -> list[Estimate]:
+        exact = 0.5 * (1 - phi) ** 3.5
+        return [Estimate(float(v), 0.01) for v in exact + noise * random.normal(size=4)]
+
+    exponents = np.array([known(richardson_zaki(phi, speeds(0.01))[1]) for _ in range(300)])
+    assert exponents[:, 0].mean() == pytest.approx(3.5, abs=4 * exponents[:, 0].std() / 17)
+    single, exponent = richardson_zaki(phi, speeds(0.0))
+    assert single.value == pytest.approx(0.5)
+    assert exponent.value == pytest.approx(3.5)
+    with pytest.raises(ValueError, match="must be positive"):
+        richardson_zaki(phi, [Estimate(-0.1, 0.01)] * 4)
+
+
+def test_both_ways_give_d_of_persistent_walks_that_drift() -> None:
+    """Velocities that keep a part c from step to step: D = v^2 dt (1 + c) / (2 (1 - c))."""
+    random = np.random.default_rng(3)
+    keep, interval, steps, walkers = 0.6, 0.5, 16000, 24
+    velocity = np.empty((steps, walkers, 3))
+    velocity[0] = random.normal(size=(walkers, 3))
+    for step in range(1, steps):
+        kick = random.normal(size=(walkers, 3))
+        velocity[step] = keep * velocity[step - 1] + math.sqrt(1 - keep**2) * kick
+    positions = np.cumsum(interval * (velocity + np.array([0.0, 0.0, -0.3])), axis=0)
+    found = suspension_diffusion(positions, interval, longest=25.0)
+    exact = interval * (1 + keep) / (2 * (1 - keep))
+    for estimate in (found.from_msd, found.green_kubo):
+        value, error = known(estimate)
+        assert error < 0.03 * exact
+        assert abs(value - exact) < 4 * error
+    with pytest.raises(ValueError, match="at least 128 are needed"):
+        suspension_diffusion(positions[:100], interval, longest=25.0)
+
+
+def test_the_images_of_a_box_slow_diffusion_as_a_lattice_sum_says() -> None:
+    """2.837 / L is minus the mean potential at a charge from its images and a background."""
+    k = np.arange(-12, 13)
+    n = np.stack(np.meshgrid(k, k, k), axis=-1).reshape(-1, 3)
+    squares = (n**2).sum(axis=1)
+    squares = squares[squares > 0]
+    alpha = 2.0  # of an Ewald sum with L = 1
+    reciprocal = (np.exp(-(math.pi**2) * squares / alpha**2) / (math.pi * squares)).sum()
+    distance = np.sqrt(squares)
+    real = sum(math.erfc(alpha * r) / r for r in distance[distance < 4])
+    constant = reciprocal + real - math.pi / alpha**2 - 2 * alpha / math.sqrt(math.pi)
+    larger = infinite_box(Estimate(0.1, 0.01), viscosity=2.0, edge=5.0)
+    assert larger.value is not None
+    assert larger.value - 0.1 == pytest.approx(-constant / (6 * math.pi * 2.0 * 5.0), rel=1e-6)
+    assert infinite_box(Estimate(None, None, "x"), 1.0, 1.0).value is None
+
+
+@pytest.mark.parametrize("periodic", [(True, True, True), (True, True, False)])
+def test_clusters_are_the_components_of_the_graph_of_bonds(
+    periodic: tuple[bool, bool, bool],
+) -> None:
+    random = np.random.default_rng(4)
+    frames = random.uniform(0, 9, size=(5, 80, 3))
+    series = cluster_series(frames, BOX, periodic, 1.5)
+    for number, frame in enumerate(frames):
+        apart = frame[:, None] - frame[None]
+        apart -= np.where(periodic, 9.0 * np.round(apart / 9.0), 0.0)
+        near = (apart**2).sum(axis=2) < 1.5**2
+        np.fill_diagonal(near, val=False)
+        _, component = connected_components(coo_matrix(near))
+        sizes = np.bincount(component)
+        assert series.largest[number] == sizes.max()
+        assert series.number[number] == (sizes > 1).sum()
+        assert series.alone[number] == (sizes == 1).sum()
+        assert series.bonds_per_colloid[number] == near.sum() / 2 / 80
+        label, _ = labels(frame, BOX, periodic, 1.5)
+        same = label[:, None] == label[None]
+        np.testing.assert_array_equal(same, component[:, None] == component[None])
+
+
+def test_g_of_independent_points_is_one_and_of_a_lattice_peaks_at_its_shells() -> None:
+    random = np.random.default_rng(5)
+    found = radial_distribution(random.uniform(0, 9, size=(200, 100, 3)), BOX, 0.25, 4.4)
+    deviation = (found.g[2:] - 1) / found.error[2:]
+    assert abs(deviation).max() < 5
+    assert len(found.peaks) == 0
+    sites = np.stack(np.meshgrid(*[np.arange(6) * 1.5] * 3), axis=-1).reshape(-1, 3)
+    lattice = radial_distribution(
+        sites + random.normal(size=(20, *sites.shape)) * 0.03, BOX, 0.05, 3.2
+    )
+    shells = 1.5 * np.sqrt([1, 2, 3, 4])
+    assert len(lattice.peaks) == 4
+    np.testing.assert_allclose(lattice.peaks, shells, atol=0.05)
+
+
+def test_false_alarms_of_normality_are_as_often_as_stated() -> None:
+    random = np.random.default_rng(6)
+    alarms = sum(not normality(random.normal(size=(10, 60, 3)), 1).normal for _ in range(600))
+    assert alarms < 600 * FALSE_ALARMS * 2.5
+    uniform = normality(random.uniform(size=(10, 60, 3)), 1)
+    assert not uniform.normal
+    assert uniform.excess_kurtosis == pytest.approx(-1.2, abs=5 * uniform.kurtosis_error)
+    with pytest.raises(ValueError, match="at least 100"):
+        normality(random.normal(size=(10, 9, 3)), 1)

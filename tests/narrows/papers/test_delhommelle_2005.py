@@ -1,0 +1,61 @@
+"""The figures of lane formation: all there, each from runs that can be run."""
+
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+import lammps_plugin
+from analysis import RunDirectory
+from lammps_inputs import Scene, make_scene
+from lammps_inputs.deck import check_engine
+from narrows.papers.delhommelle_2005 import PAPER
+from narrows.papers.delhommelle_2005.three_dimensions import string_order
+from narrows.papers.figure import Quality
+from narrows.papers.session import Plan
+from srd_driver import Simulation
+
+HOURS = {"quick": 10 / 60, "full": 4.0}  # promised, on two cores
+STEP = 55e-9  # seconds of a kinetic step, a particle; measured by benchmarks/lanes.py
+DEARER = {"configurational": 2.3}
+
+
+def test_every_figure_is_there() -> None:
+    assert [figure.number for figure in PAPER.figures] == [str(n) for n in range(1, 12)]
+    assert all(figure.caption for figure in PAPER.figures)
+
+
+@pytest.mark.parametrize("quality", ["quick", "full"])
+def test_runs_can_be_run_in_the_time_that_is_promised(quality: Quality, tmp_path: Path) -> None:
+    plan = Plan(PAPER, PAPER.figures, quality, tmp_path)
+    seconds = 0.0
+    for run in plan.runs:
+        check_engine(run.scene, run.engine)
+        thermostat = run.scene.model_dump()["thermostat"]
+        spheres = 1.5 if run.scene.system.box.dimensions == 3 else 1.0
+        seconds += run.scene.system.work * STEP * DEARER.get(thermostat, 1.0) * spheres
+    assert seconds / 2 < HOURS[quality] * 3600
+    named = [scene for figure in PAPER.figures for scene in figure.scenes(quality)]
+    assert len(plan.runs) < len(named)  # figures share runs
+
+
+@pytest.mark.skipif(not lammps_plugin.folder(), reason="the plugin is not built")
+def test_string_order_of_a_crystal_and_a_fluid(tmp_path: Path) -> None:
+    """All 216 of a cubic lattice in one wave; a fluid has S(k) of a few."""
+
+    def order(name: str, **fields: float) -> float:
+        scene: Scene = make_scene(
+            "shear",
+            particles=216,
+            rate=1e-3,
+            time_step=1e-3,
+            sampling_interval=0.01,
+            **({"duration": 0.02, "equilibration": 0.0} | fields),
+        )
+        with Simulation(scene, "md", tmp_path / name) as simulation:
+            simulation.finish()
+        return string_order(RunDirectory(tmp_path / name)).number
+
+    assert order("crystal", rest=0.0, temperature=1e-6) == pytest.approx(216, rel=0.01)
+    assert 1 < order("fluid", rest=5.0) < 60
+    assert np.isfinite(order("fluid_too", rest=5.0, seed=2))
