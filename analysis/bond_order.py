@@ -8,9 +8,8 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
+from analysis.arrays import Array
 from analysis.voronoi_library import freud
-
-Array = NDArray[np.float64]
 
 
 @dataclass(frozen=True)

@@ -9,9 +9,8 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
+from analysis.arrays import Array
 from analysis.run_directory import RunDirectory
-
-Array = NDArray[np.float64]
 
 GROUP = 5  # spacings in a group, Fig. 4.12
 

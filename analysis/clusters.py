@@ -6,7 +6,7 @@ import freud
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-Array = NDArray[np.float64]
+from analysis.arrays import Array
 
 BOND = 1.1  # distance of bonded centres over the diameter: beyond the secondary minimum of (1), (2)
 

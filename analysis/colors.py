@@ -6,13 +6,12 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
+from analysis.arrays import Array
 from analysis.diffusivity.blocks import jackknife
 from analysis.estimate import Estimate
 from analysis.run_directory import RunDirectory
 from run_files import RunDirectoryError
 from run_files.manifest import Reactions
-
-Array = NDArray[np.float64]
 
 MIN_OUTPUTS = 6  # after the equilibration
 BLOCKS = 20

@@ -1,12 +1,8 @@
 """Configurational temperature from series of its two sums (delhommelle-2005, 4)."""
 
-import numpy as np
-from numpy.typing import NDArray
-
+from analysis.arrays import Array
 from analysis.correlated_mean import mean
 from analysis.estimate import Estimate
-
-Array = NDArray[np.float64]
 
 
 def ratio_of_means(numerator: Array, denominator: Array) -> Estimate:

@@ -8,13 +8,13 @@ from collections.abc import Callable, Sequence
 from dataclasses import replace
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 from scipy import special
 
+from analysis.arrays import Array
 from analysis.estimate import Estimate, mean_of_independent
 from analysis.spectrum_at_zero import Fluctuation, fluctuation_of_mean
 
-Array = NDArray[np.float64]
 Runs = ArrayLike | Sequence[ArrayLike]
 
 FEWEST_SAMPLES = 6

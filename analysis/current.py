@@ -1,12 +1,11 @@
 """Currents of driven mixtures, flow profiles by colour, viscosity of a shear flow."""
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 
+from analysis.arrays import Array
 from analysis.correlated_mean import mean
 from analysis.estimate import Estimate
-
-Array = NDArray[np.float64]
 
 
 def current(velocities: Array, signs: ArrayLike) -> Array:

@@ -7,9 +7,8 @@ from numpy.typing import ArrayLike, NDArray
 from scipy.sparse import coo_array
 from scipy.sparse.csgraph import connected_components
 
+from analysis.arrays import Array
 from analysis.periodic import close_pairs, wrapped
-
-Array = NDArray[np.float64]
 
 
 def structure_factor(positions: Array, lengths: ArrayLike, largest: int) -> tuple[Array, Array]:

@@ -9,10 +9,9 @@ potential of mean force at the distance y is -n times the integral of f beyond t
 from collections.abc import Callable
 
 import numpy as np
-from numpy.typing import NDArray
 from scipy.integrate import quad
 
-Array = NDArray[np.float64]
+from analysis.arrays import Array
 
 
 def wall_depletion(

@@ -7,12 +7,10 @@ Correlations by the Wiener-Khinchin theorem, O(T log T): P. de Buyl, "tidynamics
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 from scipy import fft, integrate
 
+from analysis.arrays import Array
 from analysis.estimate import Estimate, jackknife
-
-Array = NDArray[np.float64]
 
 SEGMENTS = 8  # of the sampled time, for the jackknife
 MIN_LAGS = 10  # in the last decade of lags, from a tenth of a segment's quarter to the quarter

@@ -12,10 +12,10 @@ from dataclasses import dataclass, replace
 from typing import Any
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 from scipy import special, stats
 
-Array = NDArray[np.float64]
+from analysis.arrays import Array
 
 LEAST_INDEPENDENT = 6  # below, an error from a spread is itself uncertain by a third
 SPREAD_BEYOND_ERRORS = 0.01  # chance of a spread of repeats at which their own errors are given up

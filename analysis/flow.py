@@ -5,9 +5,8 @@ weighted by the particles it held, so that the mean over time is momentum over m
 """
 
 import numpy as np
-from numpy.typing import NDArray
 
-Array = NDArray[np.float64]
+from analysis.arrays import Array
 
 
 def momentum_profile(counts: Array, velocity: Array) -> Array:

@@ -3,11 +3,10 @@
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 
+from analysis.arrays import Array
 from analysis.estimate import Estimate
-
-Array = NDArray[np.float64]
 
 
 def current(density: float, speed: Estimate) -> Estimate:

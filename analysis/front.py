@@ -4,11 +4,11 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 from scipy.optimize import curve_fit
 from scipy.special import ndtr
 
-Array = NDArray[np.float64]
+from analysis.arrays import Array
 
 
 def coarse_density(x: Array, edges: ArrayLike, width: float) -> Array:

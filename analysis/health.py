@@ -1,13 +1,11 @@
 """Signs that a finished run went wrong although nothing stopped it."""
 
 import numpy as np
-from numpy.typing import NDArray
 from scipy.spatial import KDTree
 
+from analysis.arrays import Array
 from analysis.estimate import Estimate
 from run_files.manifest import Box
-
-Array = NDArray[np.float64]
 
 SIGNIFICANT = 3  # standard errors beyond the limit
 OVERLAP = 0.95  # of the diameter: 34 kBT of the 48-24 repulsion, out of thermal reach

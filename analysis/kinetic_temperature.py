@@ -4,9 +4,9 @@ delhommelle-2005 (1) takes the velocities as they are, flow included, and names 
 """
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 
-Array = NDArray[np.float64]
+from analysis.arrays import Array
 
 
 def kinetic_temperature(velocities: Array, masses: ArrayLike = 1.0) -> Array:

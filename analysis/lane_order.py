@@ -6,11 +6,10 @@ x; lanes along the field are told apart by the distance across it.
 """
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 
+from analysis.arrays import Array
 from analysis.periodic import nearest_distance
-
-Array = NDArray[np.float64]
 
 
 def lane_order(positions: Array, colours: ArrayLike, lengths: ArrayLike) -> Array:

@@ -4,11 +4,10 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 
+from analysis.arrays import Array
 from analysis.estimate import Estimate, joint_freedom, mean_of_independent
-
-Array = NDArray[np.float64]
 
 
 @dataclass(frozen=True)

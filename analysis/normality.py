@@ -3,10 +3,9 @@
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 from scipy import stats
 
-Array = NDArray[np.float64]
+from analysis.arrays import Array
 
 FALSE_ALARMS = 0.01  # of runs whose velocities are Gaussian, all directions together
 LEAST = 100  # samples in each direction

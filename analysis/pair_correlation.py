@@ -1,9 +1,8 @@
 """Pair correlation of the colloids along the channel."""
 
 import numpy as np
-from numpy.typing import NDArray
 
-Array = NDArray[np.float64]
+from analysis.arrays import Array
 
 
 def pair_correlation(x: Array, length: float, bin_width: float) -> tuple[Array, Array]:

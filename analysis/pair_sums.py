@@ -7,11 +7,11 @@ from collections.abc import Callable
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 
+from analysis.arrays import Array
 from analysis.periodic import close_pairs
 
-Array = NDArray[np.float64]
 Derivatives = Callable[[Array], tuple[Array, Array, Array, Array]]
 
 

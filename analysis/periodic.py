@@ -4,7 +4,8 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 from scipy.spatial import cKDTree
 
-Array = NDArray[np.float64]
+from analysis.arrays import Array
+
 Indices = NDArray[np.intp]
 
 

@@ -4,12 +4,11 @@ import math
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 from scipy.signal import find_peaks
 
+from analysis.arrays import Array
 from analysis.periodic import close_pairs
-
-Array = NDArray[np.float64]
 
 PROMINENCE = 5  # standard errors by which a peak stands out
 

@@ -13,13 +13,13 @@ import MDAnalysis
 import numpy as np
 from numpy.typing import NDArray
 
+from analysis.arrays import Array
 from analysis.particle_trajectory import ParticleTrajectory
 from run_files import RunDirectoryError
 from run_files.manifest import Box, Clock, Output, Solvent, Species, read_manifest
 from run_files.progress import Progress, is_begun, read_progress
 from run_files.reading import read_text, refuse
 
-Array = NDArray[np.float64]
 Steps = NDArray[np.int64]
 
 

@@ -5,12 +5,11 @@ from collections.abc import Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 
+from analysis.arrays import Array
 from analysis.estimate import Estimate
 from analysis.line_fit import fit_polynomial
-
-Array = NDArray[np.float64]
 
 
 @dataclass(frozen=True)

@@ -5,10 +5,9 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
+from analysis.arrays import Array
 from analysis.run_directory import RunDirectory
 from run_files import RunDirectoryError
-
-Array = NDArray[np.float64]
 
 
 @dataclass(frozen=True)

@@ -3,14 +3,12 @@
 import math
 
 import numpy as np
-from numpy.typing import NDArray
 from scipy.linalg import cholesky_banded, solve_banded
 from scipy.optimize import minimize_scalar
 
+from analysis.arrays import Array
 from analysis.estimate import Estimate
 from analysis.flow import momentum_profile
-
-Array = NDArray[np.float64]
 
 MIN_INTERVALS = 10  # below, the likelihood is no parabola and its curvature no error
 

@@ -28,7 +28,7 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy import fft, optimize, special, stats
 
-Array = NDArray[np.float64]
+from analysis.arrays import Array
 
 MOST_MODES = 256  # of the lowest frequencies; an error from white noise is then known to 4 %
 MOST_BLOCKS = 1024  # longer series are averaged to at most so many blocks first

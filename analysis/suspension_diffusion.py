@@ -9,16 +9,14 @@ import math
 from dataclasses import dataclass, replace
 
 import numpy as np
-from numpy.typing import NDArray
 
+from analysis.arrays import Array
 from analysis.diffusion import (
     SEGMENTS,
     autocorrelation,
     mean_squared_displacement,
 )
 from analysis.estimate import Estimate, jackknife
-
-Array = NDArray[np.float64]
 
 CUBIC = 2.837297  # of the Ewald sum of a cubic lattice
 TERMS = 50  # of (35), in collisions, as in IX B

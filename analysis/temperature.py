@@ -1,9 +1,8 @@
 """Temperature of the colloids, from their velocities across the channel."""
 
 import numpy as np
-from numpy.typing import NDArray
 
-Array = NDArray[np.float64]
+from analysis.arrays import Array
 
 
 def colloid_temperature(velocities: Array, mass: float) -> Array:

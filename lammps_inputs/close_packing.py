@@ -6,9 +6,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from lammps_inputs.system import Box, Species
-
-Array = NDArray[np.float64]
+from lammps_inputs.system import Array, Box, Species
 
 _TOUCHING = 1 + 1e-9
 _CURVE_BITS = 20  # of each coordinate; 3 of them fill a word

@@ -3,11 +3,8 @@
 from dataclasses import dataclass, field
 
 import numpy as np
-from numpy.typing import NDArray
 
-from lammps_inputs.system import Box, Continuation, System
-
-Array = NDArray[np.float64]
+from lammps_inputs.system import Array, Box, Continuation, System
 
 INITIAL_STREAM = 0  # Philox key of the initial state; the engines' own streams count from 1
 

@@ -6,11 +6,8 @@ from dataclasses import dataclass
 from pathlib import Path
 
 import numpy as np
-from numpy.typing import NDArray
 
-from lammps_inputs.system import Box, Species
-
-Array = NDArray[np.float64]
+from lammps_inputs.system import Array, Box, Species
 
 PLACEMENT_STREAM = 91  # Philox key of random placements
 LONGEST_ROW = 300  # bytes of a dump's row

@@ -7,13 +7,12 @@ import numpy as np
 
 from lammps_inputs import Scene
 from lammps_inputs.color_outputs import color_outputs
-from lammps_inputs.system import TRAJECTORY, Output, System
+from lammps_inputs.system import TRAJECTORY, Array, Output, System
 from run_files.progress import Progress
 from srd_driver.dump import write_frame
 from srd_driver.events import HardSpheres, PairReactions, Profile, WallReactions
 from srd_driver.events.initial import thermal_velocities
 from srd_driver.events.state import SPEED_BIN
-from srd_driver.session import Array
 
 
 class EventsSession:

@@ -10,11 +10,11 @@ from lammps_inputs import Scene
 from lammps_inputs.deck import script
 from lammps_inputs.engines.engine import Start
 from lammps_inputs.engines.lammps import particle_group
+from lammps_inputs.system import Array
 from run_files.cutting import cut_output
 from run_files.progress import Progress
 from srd_driver.errors import RunError
 from srd_driver.parallel import agree
-from srd_driver.session import Array
 
 LAST_WORD = b"LammpS RestartT\0"  # of a restart file
 

@@ -5,11 +5,10 @@ from pathlib import Path
 import numpy as np
 
 from lammps_inputs import Scene
-from lammps_inputs.system import FLUID_AVERAGES, FLUID_PROFILE, TRAJECTORY
+from lammps_inputs.system import FLUID_AVERAGES, FLUID_PROFILE, TRAJECTORY, Array
 from run_files.progress import Progress
 from srd_driver.dump import write_frame
 from srd_driver.reference import ReferenceEngine
-from srd_driver.session import Array
 
 
 class ReferenceSession:

@@ -11,6 +11,7 @@ from typing import Any, Self, TextIO
 
 from lammps_inputs import Scene, SceneError
 from lammps_inputs.engines import default_engine
+from lammps_inputs.system import Array
 from run_files.checksums import Checksum, GrowingFile
 from run_files.names import checkpoint_name
 from run_files.progress import FORMAT, Progress, is_begun, write_failure, write_progress
@@ -19,7 +20,7 @@ from srd_driver import resume as run_directory
 from srd_driver.engines import require_engine, start_session
 from srd_driver.errors import RunError
 from srd_driver.parallel import agree, communicator
-from srd_driver.session import Array, Session
+from srd_driver.session import Session
 
 PIECE_SECONDS = 0.5  # between two reports of progress
 

@@ -13,15 +13,13 @@ from typing import Any
 import emcee
 import numpy as np
 from MDAnalysis.analysis.base import AnalysisBase
-from numpy.typing import NDArray
 from scipy.linalg import eigh
 from scipy.optimize import minimize
 
+from analysis.arrays import Array
 from analysis.diffusivity.color import frame_time
 from analysis.diffusivity.coordinates import Coordinate
 from analysis.diffusivity.errors import DiffusivityError
-
-Array = NDArray[np.float64]
 
 MIN_CROSSINGS = 20  # between any two neighbouring bins
 LEAST_DISPLACEMENT = 2.5  # bins in a lag: below, where in its bin a walker began matters

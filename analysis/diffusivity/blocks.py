@@ -3,10 +3,9 @@
 from collections.abc import Callable
 
 import numpy as np
-from numpy.typing import NDArray
 from scipy.stats import t as student
 
-Array = NDArray[np.float64]
+from analysis.arrays import Array
 
 
 def jackknife(statistic: Callable[..., Array], *sums: Array) -> tuple[Array, Array]:

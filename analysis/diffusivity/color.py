@@ -4,14 +4,13 @@ from typing import Any
 
 import numpy as np
 from MDAnalysis.analysis.base import AnalysisBase
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 
+from analysis.arrays import Array
 from analysis.diffusivity.blocks import jackknife
 from analysis.diffusivity.coordinates import Coordinate
 from analysis.diffusivity.errors import DiffusivityError
 from analysis.diffusivity.local_fit import local_derivative
-
-Array = NDArray[np.float64]
 
 BLOCKS = 10
 MIN_REACTIONS = 100

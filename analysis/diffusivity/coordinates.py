@@ -4,11 +4,9 @@ from typing import Any, Protocol
 
 import numpy as np
 from MDAnalysis.lib.distances import distance_array
-from numpy.typing import NDArray
 
+from analysis.arrays import Array
 from analysis.diffusivity.errors import DiffusivityError
-
-Array = NDArray[np.float64]
 
 
 class Coordinate(Protocol):

@@ -1,9 +1,8 @@
 """Derivative of a binned profile by a local cubic fit."""
 
 import numpy as np
-from numpy.typing import NDArray
 
-Array = NDArray[np.float64]
+from analysis.arrays import Array
 
 CUBIC = 4  # coefficients
 

@@ -9,15 +9,13 @@ from typing import Any
 import MDAnalysis
 import numpy as np
 from matplotlib.figure import Figure
-from numpy.typing import NDArray
 
+from analysis.arrays import Array
 from analysis.diffusivity.bayes import BayesianDiffusivity
 from analysis.diffusivity.color import ColorDiffusivity
 from analysis.diffusivity.coordinates import AlongAxis
 from analysis.diffusivity.errors import DiffusivityError
 from analysis.diffusivity.first_passage import FirstPassageDiffusivity
-
-Array = NDArray[np.float64]
 
 ESTIMATORS = ("color", "bayes", "first-passage")
 QUANTILE = 0.05  # of positions beyond which particles react, where no surfaces are given

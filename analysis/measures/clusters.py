@@ -5,11 +5,12 @@ from matplotlib.figure import Figure
 from numpy.typing import NDArray
 
 from analysis import correlated_mean
+from analysis.arrays import Array
 from analysis.clusters import BOND, ClusterSeries, cluster_series, labels
 from analysis.drawing import TIME, mark_equilibration, one_panel
 from analysis.findings import Findings
 from analysis.measures.settling_speed import sampled_frames
-from analysis.run_directory import Array, RunDirectory
+from analysis.run_directory import RunDirectory
 
 FRAMES = 400  # looked at, evenly spaced
 

@@ -6,13 +6,12 @@ import numpy as np
 from matplotlib.figure import Figure
 from numpy.typing import NDArray
 
+from analysis.arrays import Array
 from analysis.colors import Colors, block_mean, colors_of, estimate
 from analysis.diffusivity.blocks import quantile_95
 from analysis.diffusivity.color import color_diffusivity
 from analysis.findings import Findings
 from analysis.run_directory import RunDirectory
-
-Array = NDArray[np.float64]
 
 REACH = 0.2  # half width of the window of the local cubic fit [a0]
 NEAR = 0.1  # what is called at the surface [a0]

@@ -2,14 +2,12 @@
 
 import numpy as np
 from matplotlib.figure import Figure
-from numpy.typing import NDArray
 
+from analysis.arrays import Array
 from analysis.current import flow_profiles
 from analysis.findings import Findings
 from analysis.measures.settling_speed import sampled_frames
 from analysis.run_directory import RunDirectory
-
-Array = NDArray[np.float64]
 
 
 def measure(run: RunDirectory) -> Findings:

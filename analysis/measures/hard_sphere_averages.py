@@ -3,14 +3,12 @@
 import math
 
 import numpy as np
-from numpy.typing import NDArray
 
 from analysis import correlated_mean
+from analysis.arrays import Array
 from analysis.colors import blocks_of, estimate
 from analysis.findings import Findings
 from analysis.run_directory import RunDirectory
-
-Array = NDArray[np.float64]
 
 FITTED = 0.2  # from a wall, where the density is extrapolated to contact [a0]
 

@@ -1,17 +1,14 @@
 """The order parameter of lanes, across the field and as the paper prints it."""
 
-import numpy as np
 from matplotlib.figure import Figure
-from numpy.typing import NDArray
 
 from analysis import correlated_mean
+from analysis.arrays import Array
 from analysis.drawing import TIME, mark_equilibration, one_panel
 from analysis.findings import Findings
 from analysis.lane_order import lane_order, lane_order_printed
 from analysis.measures.settling_speed import sampled_frames
 from analysis.run_directory import RunDirectory
-
-Array = NDArray[np.float64]
 
 
 def measure(run: RunDirectory) -> Findings:

@@ -2,15 +2,13 @@
 
 import numpy as np
 from matplotlib.figure import Figure
-from numpy.typing import NDArray
 
+from analysis.arrays import Array
 from analysis.drawing import one_panel
 from analysis.findings import Findings
 from analysis.measures.settling_speed import sampled_frames
 from analysis.pair_correlation import pair_correlation
 from analysis.run_directory import RunDirectory
-
-Array = NDArray[np.float64]
 
 BIN_WIDTH = 0.1  # [a0]; the 48-24 repulsion is about that steep
 

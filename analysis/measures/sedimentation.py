@@ -6,10 +6,11 @@ import numpy as np
 from matplotlib.figure import Figure
 
 from analysis import correlated_mean
+from analysis.arrays import Array
 from analysis.drawing import TIME, mark_equilibration, one_panel
 from analysis.findings import Findings, in_si
 from analysis.measures.settling_speed import sampled_frames
-from analysis.run_directory import Array, RunDirectory
+from analysis.run_directory import RunDirectory
 from analysis.sedimentation import SettlingSpeeds, settling_speeds
 
 

@@ -4,11 +4,12 @@ import numpy as np
 from matplotlib.figure import Figure
 
 from analysis import correlated_mean
+from analysis.arrays import Array
 from analysis.drawing import one_panel
 from analysis.estimate import Estimate
 from analysis.findings import Findings
 from analysis.measures.settling_speed import sampled_frames
-from analysis.run_directory import Array, RunDirectory
+from analysis.run_directory import RunDirectory
 
 LAYERS = 10
 

@@ -2,15 +2,13 @@
 
 import numpy as np
 from matplotlib.figure import Figure
-from numpy.typing import NDArray
 
+from analysis.arrays import Array
 from analysis.drawing import TIME, mark_equilibration, one_panel
 from analysis.estimate import Estimate
 from analysis.findings import Findings
 from analysis.run_directory import RunDirectory
 from analysis.shear_wave import decay_viscosity, wave_amplitude
-
-Array = NDArray[np.float64]
 
 
 def measure(run: RunDirectory) -> Findings:

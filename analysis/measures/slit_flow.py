@@ -2,15 +2,13 @@
 
 import numpy as np
 from matplotlib.figure import Figure
-from numpy.typing import NDArray
 
 from analysis import correlated_mean, flow
+from analysis.arrays import Array
 from analysis.drawing import one_panel
 from analysis.estimate import Estimate
 from analysis.findings import Findings
 from analysis.run_directory import RunDirectory
-
-Array = NDArray[np.float64]
 
 
 def measure(run: RunDirectory) -> Findings:

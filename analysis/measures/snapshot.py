@@ -6,11 +6,10 @@ from matplotlib.figure import Figure
 from matplotlib.patches import Circle
 from numpy.typing import NDArray
 
+from analysis.arrays import Array
 from analysis.findings import Findings
 from analysis.periodic import wrapped
 from analysis.run_directory import RunDirectory
-
-Array = NDArray[np.float64]
 
 
 def measure(run: RunDirectory) -> Findings:

@@ -1,16 +1,13 @@
 """Spacings of neighbours in the chain, singly and in groups (tabatabaei-2009, Fig. 4.12)."""
 
-import numpy as np
 from matplotlib.figure import Figure
-from numpy.typing import NDArray
 
 from analysis import chain
+from analysis.arrays import Array
 from analysis.drawing import TIME, mark_equilibration, one_panel
 from analysis.findings import Findings
 from analysis.measures.settling_speed import sampled_frames
 from analysis.run_directory import RunDirectory
-
-Array = NDArray[np.float64]
 
 
 def measure(run: RunDirectory) -> Findings:

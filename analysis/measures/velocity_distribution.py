@@ -6,11 +6,12 @@ import numpy as np
 from matplotlib.figure import Figure
 from scipy import stats
 
+from analysis.arrays import Array
 from analysis.drawing import one_panel
 from analysis.findings import Findings
 from analysis.measures.settling_speed import sampled_frames
 from analysis.normality import FALSE_ALARMS, normality
-from analysis.run_directory import Array, RunDirectory
+from analysis.run_directory import RunDirectory
 
 FORGOTTEN = 10  # relaxation times of Stokes's friction
 

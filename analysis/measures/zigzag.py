@@ -3,15 +3,13 @@
 import numpy as np
 from matplotlib.figure import Figure
 from matplotlib.ticker import MaxNLocator
-from numpy.typing import NDArray
 
 from analysis import chain, correlated_mean
+from analysis.arrays import Array
 from analysis.drawing import TIME, mark_equilibration
 from analysis.findings import Findings
 from analysis.measures.settling_speed import sampled_frames
 from analysis.run_directory import RunDirectory
-
-Array = NDArray[np.float64]
 
 
 def measure(run: RunDirectory) -> Findings:

@@ -10,6 +10,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from lammps_inputs.close_packing import close_packing, sphere_volume
+from lammps_inputs.system import Array
 from srd_driver.events import kernel, profiles
 from srd_driver.events.errors import EventError
 from srd_driver.events.initial import thermal_velocities
@@ -25,8 +26,6 @@ from srd_driver.events.state import (
     Colors,
     Spheres,
 )
-
-Array = NDArray[np.float64]
 
 _BUCKETS = 4  # for each particle: a ring of 4 mean times to the next event
 _BINS = 50  # of the profiles, for each diameter

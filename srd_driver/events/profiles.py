@@ -7,9 +7,8 @@ import numpy as np
 from numba import njit
 from numpy.typing import NDArray
 
+from lammps_inputs.system import Array
 from srd_driver.events.state import POSITION, TIME, VELOCITY
-
-Array = NDArray[np.float64]
 
 
 @dataclass(frozen=True)

@@ -9,7 +9,8 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-Array = NDArray[np.float64]
+from lammps_inputs.system import Array
+
 Integers = NDArray[np.int32]
 
 # columns of `Spheres.body`, one particle in one cache line

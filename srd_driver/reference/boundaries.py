@@ -10,12 +10,11 @@ from dataclasses import dataclass, field
 import numpy as np
 from numpy.typing import NDArray
 
+from lammps_inputs.system import Array
 from srd_driver.reference.collision import Cells
 from srd_driver.reference.counter_random import CounterRandom, Stream
 from srd_driver.reference.faults import SimulationFault
 from srd_driver.reference.streaming import MOST_BOUNCES, contact_time
-
-Array = NDArray[np.float64]
 
 
 @dataclass(frozen=True)

@@ -4,13 +4,11 @@ Arrays hold the components first, (d, N): the fluid, of mass 1, then the colloid
 of them is sorted together."""
 
 import numpy as np
-from numpy.typing import NDArray
 
+from lammps_inputs.system import Array
 from srd_driver.reference.collision import Cells
 from srd_driver.reference.counter_random import CounterRandom, Stream
 from srd_driver.reference.thermostats import MONTE_CARLO_STRENGTH, acceptance
-
-Array = NDArray[np.float64]
 
 
 def mean_velocity(

@@ -11,10 +11,9 @@ from functools import cached_property
 import numpy as np
 from numpy.typing import NDArray
 
-from lammps_inputs.system import Rotation
+from lammps_inputs.system import Array, Rotation
 from srd_driver.reference.counter_random import CounterRandom, Stream
 
-Array = NDArray[np.float64]
 Indices = NDArray[np.intp]
 
 

@@ -12,10 +12,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from lammps_inputs.potentials.repulsive_mie import RepulsiveMie
-from lammps_inputs.system import Box, PairPotential, Solvent, System
+from lammps_inputs.system import Array, Box, PairPotential, Solvent, System
 from srd_driver.reference.faults import SimulationFault
 
-Array = NDArray[np.float64]
 Indices = NDArray[np.intp]
 
 CORE = 0.5  # of sigma: no closer approach, 1.6e4 kBT of the 12-6 repulsion

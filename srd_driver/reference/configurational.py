@@ -3,12 +3,8 @@
 It feeds T_conf back into the positions and leaves the velocities alone.
 """
 
-import numpy as np
-from numpy.typing import NDArray
-
+from lammps_inputs.system import Array
 from srd_driver.reference.soft_pairs import PairSums, SoftPairs
-
-Array = NDArray[np.float64]
 
 
 class Configurational:

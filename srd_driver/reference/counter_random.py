@@ -16,7 +16,8 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-Array = NDArray[np.float64]
+from lammps_inputs.system import Array
+
 Words = NDArray[np.uint64]
 
 

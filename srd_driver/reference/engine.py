@@ -11,7 +11,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from lammps_inputs import InitialState, Scene, initial_state
-from lammps_inputs.system import FLUID
+from lammps_inputs.system import FLUID, Array
 from srd_driver.reference import random_solvent, thermostats
 from srd_driver.reference.collision import Cells, collide, grid_shape, grid_shift
 from srd_driver.reference.colloids import ColloidForces
@@ -19,8 +19,6 @@ from srd_driver.reference.counter_random import CounterRandom
 from srd_driver.reference.faults import SimulationFault
 from srd_driver.reference.streaming import stream
 from srd_driver.reference.walls import cut_cells, mean_with_virtual_particles
-
-Array = NDArray[np.float64]
 
 
 class ReferenceEngine:

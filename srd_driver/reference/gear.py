@@ -9,9 +9,8 @@ import math
 from collections.abc import Callable
 
 import numpy as np
-from numpy.typing import NDArray
 
-Array = NDArray[np.float64]
+from lammps_inputs.system import Array
 
 CORRECTION = np.array([251 / 720, 1, 11 / 12, 1 / 3, 1 / 24])
 PASCAL = np.array([[math.comb(k, j) for k in range(5)] for j in range(5)], dtype=float)

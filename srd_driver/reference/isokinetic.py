@@ -5,11 +5,9 @@ Phys. 106, 6102 (1997); G. Pan et al., J. Chem. Phys. 122, 094114 (2005).
 """
 
 import numpy as np
-from numpy.typing import NDArray
 
+from lammps_inputs.system import Array
 from srd_driver.reference.soft_pairs import SoftPairs
-
-Array = NDArray[np.float64]
 
 
 def constraint(particles: int, directions: int, temperature: float) -> float:

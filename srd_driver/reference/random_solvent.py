@@ -5,9 +5,8 @@ import math
 import numpy as np
 from numpy.typing import NDArray
 
+from lammps_inputs.system import Array
 from srd_driver.reference.counter_random import CounterRandom, Stream, Words
-
-Array = NDArray[np.float64]
 
 ROUNDS = 8
 

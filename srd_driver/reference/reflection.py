@@ -21,11 +21,11 @@ from typing import Literal
 import numpy as np
 from numpy.typing import NDArray
 
+from lammps_inputs.system import Array
 from srd_driver.reference.boundaries import Boundaries, stream
 from srd_driver.reference.counter_random import CounterRandom, Stream
 from srd_driver.reference.rotation import cross, torque
 
-Array = NDArray[np.float64]
 Indices = NDArray[np.intp]
 Placement = Literal["entry", "nearest"]
 

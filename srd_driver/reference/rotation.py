@@ -5,9 +5,8 @@ omega changes by T / I.
 """
 
 import numpy as np
-from numpy.typing import NDArray
 
-Array = NDArray[np.float64]
+from lammps_inputs.system import Array
 
 SPHERE = 0.4  # moment of inertia of a homogeneous sphere over m R^2
 

@@ -11,7 +11,8 @@ from typing import Protocol
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-Array = NDArray[np.float64]
+from lammps_inputs.system import Array
+
 Indices = NDArray[np.intp]
 
 

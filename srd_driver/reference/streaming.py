@@ -7,9 +7,8 @@ y = 0 and y = width. Equations of tabatabaei-2009, 3.2.1, 3.2.5 and 3.4.3.
 import numpy as np
 from numpy.typing import NDArray
 
+from lammps_inputs.system import Array
 from srd_driver.reference.faults import SimulationFault
-
-Array = NDArray[np.float64]
 
 MOST_BOUNCES = 100  # in one step; thermal particles need one, two between walls a step apart
 

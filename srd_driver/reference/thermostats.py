@@ -4,12 +4,10 @@ Equations of tabatabaei-2009, 3.3.8 and 3.4.6. Arrays hold the components first,
 """
 
 import numpy as np
-from numpy.typing import NDArray
 
+from lammps_inputs.system import Array
 from srd_driver.reference.collision import Cells
 from srd_driver.reference.counter_random import CounterRandom, Stream, box_muller, uniform
-
-Array = NDArray[np.float64]
 
 MONTE_CARLO_STRENGTH = 0.1  # gamma, the largest epsilon of (3.55); half the trials are accepted
 ANDERSEN_FREQUENCY = 0.1  # nu, redrawings of a particle's velocity in a time unit [1/t0]

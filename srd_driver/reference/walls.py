@@ -3,10 +3,9 @@
 import numpy as np
 from numpy.typing import NDArray
 
+from lammps_inputs.system import Array
 from srd_driver.reference.collision import Cells
 from srd_driver.reference.counter_random import CounterRandom, Stream
-
-Array = NDArray[np.float64]
 
 
 def cut_cells(cells: Cells, shift: Array, width: float) -> NDArray[np.bool_]:

@@ -5,10 +5,10 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 
 from analysis import RunDirectory
 from analysis.analyze import summary_of
+from analysis.arrays import Array
 from analysis.colors import colors_of, estimate
 from analysis.diffusivity import (
     AlongAxis,
@@ -18,8 +18,6 @@ from analysis.diffusivity import (
 )
 from analysis.estimate import Estimate
 from analysis.measures.color_diffusivity import REACH
-
-Array = NDArray[np.float64]
 
 CONFIDENCE_95 = 2.09  # errors, of 20 blocks
 

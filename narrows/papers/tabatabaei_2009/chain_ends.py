@@ -10,9 +10,9 @@ from dataclasses import dataclass
 from functools import cache
 
 import numpy as np
-from numpy.typing import NDArray
 
 from analysis import RunDirectory
+from analysis.arrays import Array
 from analysis.estimate import Estimate, mean_of_independent
 from analysis.front import Front, coarse_density, fit_front, places
 from analysis.two_fluid import TwoFluid
@@ -20,8 +20,6 @@ from lammps_inputs.scenes.channel import Channel
 from lattice.hydrodynamics import CurrentRelation, solve
 from narrows.papers.figure import Directories
 from narrows.papers.tabatabaei_2009.beyond_flux import Constants, Law
-
-Array = NDArray[np.float64]
 
 SPACING, GROUP = 5.0, 20  # of the chain at the start [a0]; spacings in a group at an end
 BIN, CELL = 10.0, 2.0  # of densities, and of the solvers [a0]

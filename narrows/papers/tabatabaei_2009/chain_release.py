@@ -9,17 +9,15 @@ from matplotlib.collections import PatchCollection
 from matplotlib.colors import Normalize
 from matplotlib.figure import Figure
 from matplotlib.patches import Circle
-from numpy.typing import NDArray
 
 from analysis import RunDirectory, chain
+from analysis.arrays import Array
 from analysis.estimate import mean_of_independent
 from analysis.settling import SettlingSeries, settling_series
 from lammps_inputs.scenes.channel import Channel
 from narrows.papers.drawing import PAPER, one_panel, paper_remark, shades
 from narrows.papers.figure import Column, Directories, Outcome, PaperFigure, Quality
 from narrows.papers.results import Result, claimed, measured
-
-Array = NDArray[np.float64]
 
 LENGTH, COLLOIDS, SPACING = 300, 31, 5.0
 SNAPSHOT = 500.0  # time of Fig. 4.14, and end of the growth rates [t0]
