@@ -50,7 +50,7 @@ def last_frame(file: Path) -> np.ndarray:
 
 
 @pytest.mark.parametrize(
-    ("ranks", "duration", "intervals"), [(1, 150.0, (0.75, 1000.0)), (2, 15.0, (3.0,))]
+    ("ranks", "duration", "intervals"), [(1, 150.0, (0.75, 1000.0)), (2, 150.0, (3.0,))]
 )
 def test_neither_checkpoints_nor_stops_nor_the_program_show(
     ranks: int, duration: float, intervals: tuple[float, ...], tmp_path: Path, command: Run
