@@ -1,6 +1,7 @@
 """Quantities with units, as scene files and the command line have them."""
 
 from functools import cache
+from tokenize import TokenError
 from typing import Any
 
 import pint
@@ -18,9 +19,13 @@ def si(value: object, unit: str) -> float:
         ValueError: naming the value, its dimension and the one asked for.
     """
     if isinstance(value, int | float):
-        return float(value)
+        try:
+            return float(value)
+        except OverflowError:
+            raise ValueError("must be a finite number") from None
     if not isinstance(value, str):
         raise ValueError(f"must be a number in {unit} or a quantity such as '1 {unit}'")
+    shown = value if value.isprintable() else repr(value)
     try:
         quantity = _units().Quantity(value)
         if quantity.dimensionless and unit:
@@ -28,7 +33,7 @@ def si(value: object, unit: str) -> float:
         return float(quantity.to(unit).magnitude)
     except pint.DimensionalityError as error:
         raise ValueError(
-            f"{value}: is a quantity of {error.dim1}, must be one of {error.dim2} such as 1 {unit}"
+            f"{shown}: is a quantity of {error.dim1}, must be one of {error.dim2} such as 1 {unit}"
         ) from None
-    except (pint.PintError, TypeError, AttributeError, ValueError) as error:
-        raise ValueError(f"{value}: not a quantity in {unit}: {error}") from None
+    except (pint.PintError, TokenError, TypeError, AttributeError, ValueError) as error:
+        raise ValueError(f"{shown}: not a quantity in {unit}: {error}") from None

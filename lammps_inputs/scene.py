@@ -24,6 +24,7 @@ NonNegative = Annotated[float, Field(ge=0)]
 
 
 LARGEST_FILE = 2**20  # bytes of a scene file
+MOST = 2**31 - 1  # of what is counted, and of seeds
 SMALLEST, LARGEST = 1e-9, 1e9  # of any number but 0: all that is computed from it stays a float
 
 
@@ -119,8 +120,9 @@ class Scene(BaseModel, ABC):
         """A line for each number that is beyond what any scene could mean."""
         for field, value in self:
             if isinstance(value, int | float) and value and field not in self.si_fields:
-                if abs(value) > LARGEST:
-                    yield f"{field} = {shown(value)}: must be at most {LARGEST:g} in size"
+                largest = MOST if isinstance(value, int) else LARGEST
+                if abs(value) > largest:
+                    yield f"{field} = {shown(value)}: must be at most {largest:g} in size"
                 elif abs(value) < SMALLEST:
                     yield f"{field} = {shown(value)}: must be 0, or at least {SMALLEST:g} in size"
 

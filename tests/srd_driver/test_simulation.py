@@ -185,7 +185,7 @@ def test_a_used_directory_is_refused(tmp_path: Path) -> None:
     (tmp_path / "notes.txt").write_text("mine")
     with pytest.raises(RunError, match="is not empty: go on with its run by --resume"):
         Simulation(channel(), "srd", tmp_path)
-    with pytest.raises(RunError, match=r"is not a run directory: it has no scene\.toml"):
+    with pytest.raises(RunError, match=r"is not a run directory: it has no manifest\.json"):
         Simulation(channel(), "srd", tmp_path, resume=True)
     assert (tmp_path / "notes.txt").read_text() == "mine"
 
