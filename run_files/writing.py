@@ -2,6 +2,8 @@
 
 import json
 import os
+from collections.abc import Iterator
+from contextlib import contextmanager
 from pathlib import Path
 from typing import Any
 
@@ -13,12 +15,19 @@ def draft_of(path: Path) -> Path:
     return path.with_name(f".{path.name}.draft")
 
 
-def replace_text(path: Path, text: str) -> None:
-    """Write a text file and put it in the place of the old one."""
+@contextmanager
+def replacing(path: Path) -> Iterator[Path]:
+    """The draft to write; it takes the place of the file once it is whole and on the disk."""
     draft = draft_of(path)
-    draft.write_text(text, encoding="utf-8", newline="")
+    yield draft
     reach_disk(draft)
     os.replace(draft, path)
+
+
+def replace_text(path: Path, text: str) -> None:
+    """Write a text file and put it in the place of the old one."""
+    with replacing(path) as draft:
+        draft.write_text(text, encoding="utf-8", newline="")
 
 
 def replace_json(path: Path, content: dict[str, Any]) -> None:

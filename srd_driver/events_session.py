@@ -9,6 +9,7 @@ from lammps_inputs import Scene
 from lammps_inputs.color_outputs import color_outputs
 from lammps_inputs.system import TRAJECTORY, Array, Output, System
 from run_files.progress import Progress
+from run_files.writing import replacing
 from srd_driver.dump import write_frame
 from srd_driver.events import HardSpheres, PairReactions, Profile, WallReactions
 from srd_driver.events.initial import thermal_velocities
@@ -51,9 +52,8 @@ class EventsSession:
             self._sample()
 
     def save(self, file: str) -> None:
-        draft = self._directory / f".{file}"
-        self._engine.save(draft)
-        draft.replace(self._directory / file)
+        with replacing(self._directory / file) as draft:
+            self._engine.save(draft)
 
     def close(self) -> None:
         pass

@@ -7,6 +7,7 @@ import numpy as np
 from lammps_inputs import Scene
 from lammps_inputs.system import FLUID_AVERAGES, FLUID_PROFILE, TRAJECTORY, Array
 from run_files.progress import Progress
+from run_files.writing import replacing
 from srd_driver.dump import write_frame
 from srd_driver.reference import ReferenceEngine
 
@@ -51,9 +52,8 @@ class ReferenceSession:
             self._sample()
 
     def save(self, file: str) -> None:
-        draft = self._directory / f".{file}"
-        self._engine.save(draft)
-        draft.replace(self._directory / file)
+        with replacing(self._directory / file) as draft:
+            self._engine.save(draft)
 
     def close(self) -> None:
         pass
