@@ -24,10 +24,37 @@ Row = dict[str, Any]
 
 
 @dataclass(frozen=True)
+class Point:
+    """One combination of the swept fields.
+
+    Attributes:
+        fields: the swept ones, and whatever else differs.
+        runs: names of the run directories of its finished repeats.
+        estimates: means over them by quantity.
+    """
+
+    fields: Mapping[str, Any]
+    runs: Sequence[str]
+    estimates: Mapping[str, Estimate]
+
+    def row(self, quantities: Sequence[str]) -> Row:
+        """Its row of the table."""
+        row: Row = {**self.fields, "repeats": len(self.runs)}
+        notes = []
+        for quantity in quantities:
+            estimate = self.estimates.get(quantity, Estimate(None, None))
+            row |= {quantity: estimate.value, f"{quantity}_error": estimate.error}
+            if estimate.reason:
+                notes.append(f"{quantity}: {estimate.reason}")
+        return row | {"notes": "; ".join(notes)}
+
+
+@dataclass(frozen=True)
 class SweepTable:
     """What a sweep found.
 
     Attributes:
+        points: those with finished runs, in the order of their fields.
         rows: one a point: swept fields, `repeats`, and `NAME`, `NAME_error` of every estimate,
             `notes`; as in table.csv.
         finished: runs in it.
@@ -35,6 +62,7 @@ class SweepTable:
         problems: one line for each finished run that could not be analysed.
     """
 
+    points: list[Point]
     rows: list[Row]
     finished: int
     runs: int
@@ -77,9 +105,11 @@ def tabulate(
         if directory / name not in problems
     }
     columns = _columns(sweep.over, [run.fields for run in runs.values()])
-    rows = _rows(columns, {name: runs[name].fields for name in summaries}, summaries)
+    points = _points(columns, {name: runs[name].fields for name in summaries}, summaries)
+    quantities = list(dict.fromkeys(name for found in summaries.values() for name in found))
+    rows = [point.row(quantities) for point in points]
     _write(directory / "table.csv", rows)
-    return SweepTable(rows, len(summaries), len(runs), list(problems.values()))
+    return SweepTable(points, rows, len(summaries), len(runs), list(problems.values()))
 
 
 def _read_estimates(path: Path) -> dict[str, Estimate]:
@@ -134,29 +164,31 @@ def _columns(over: Sequence[str], fields: Sequence[Mapping[str, Any]]) -> list[s
     return list(dict.fromkeys([*over, *differing]))
 
 
-def _rows(
+def _points(
     columns: Sequence[str],
     fields: Mapping[str, Mapping[str, Any]],
     summaries: Mapping[str, Mapping[str, Estimate]],
-) -> list[Row]:
-    points: dict[tuple[Any, ...], list[str]] = {}
+) -> list[Point]:
+    runs: dict[tuple[Any, ...], list[str]] = {}
     for name in summaries:
-        points.setdefault(tuple(fields[name].get(column) for column in columns), []).append(name)
-    quantities = list(dict.fromkeys(key for found in summaries.values() for key in found))
-    rows = []
-    for point in sorted(points, key=_order):
-        row: Row = dict(zip(columns, point, strict=True)) | {"repeats": len(points[point])}
-        notes = []
-        for quantity in quantities:
-            found = [
-                summaries[name][quantity] for name in points[point] if quantity in summaries[name]
-            ]
-            estimate = mean_of_repeats(found) if found else Estimate(None, None)
-            row |= {quantity: estimate.value, f"{quantity}_error": estimate.error}
-            if estimate.reason:
-                notes.append(f"{quantity}: {estimate.reason}")
-        rows.append(row | {"notes": "; ".join(notes)})
-    return rows
+        runs.setdefault(tuple(fields[name].get(column) for column in columns), []).append(name)
+    return [
+        Point(
+            dict(zip(columns, values, strict=True)),
+            runs[values],
+            _means([summaries[name] for name in runs[values]]),
+        )
+        for values in sorted(runs, key=_order)
+    ]
+
+
+def _means(repeats: Sequence[Mapping[str, Estimate]]) -> dict[str, Estimate]:
+    """Of every quantity, over the repeats that tell it."""
+    quantities = dict.fromkeys(name for found in repeats for name in found)
+    return {
+        quantity: mean_of_repeats([found[quantity] for found in repeats if quantity in found])
+        for quantity in quantities
+    }
 
 
 def _order(point: tuple[Any, ...]) -> list[tuple[bool, float, str]]:

@@ -116,6 +116,14 @@ class Scene(BaseModel, ABC):
         """
         raise SceneError([f"scene {cls.name}: stands for nothing in the laboratory"])
 
+    def lasting(self, duration: float) -> Self:
+        """The same scene with another duration [t0].
+
+        Raises:
+            SceneError: for a duration that it refuses.
+        """
+        return self.make(**(self.model_dump() | {"duration": duration}))
+
     def _sizes(self) -> Iterator[str]:
         """A line for each number that is beyond what any scene could mean."""
         for field, value in self:

@@ -17,6 +17,22 @@ Settings = Annotated[
     list[str] | None,
     typer.Option("--set", metavar="FIELD=VALUE", help="one field; wins over the file"),
 ]
+Until = Annotated[
+    list[str] | None,
+    typer.Option(
+        "--until",
+        metavar="QUANTITY=ERROR",
+        help="go on until its standard error is as small: settling_speed=2%, or in its own unit",
+    ),
+]
+Longest = Annotated[
+    float | None,
+    typer.Option(
+        min=0.0,
+        metavar="TIME",
+        help="duration at which --until ends in any case [t0]; default: 100 times the duration",
+    ),
+]
 ENGINES = "|".join(all_engines())
 DECKS = "|".join(name for name, each in all_engines().items() if isinstance(each, LammpsEngine))
 

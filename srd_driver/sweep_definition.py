@@ -7,7 +7,7 @@ import contextlib
 import itertools
 import math
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import Any
 
@@ -82,6 +82,21 @@ def plan(
     if problems:
         raise SceneError(f"{_points(labels)}: {text}" for text, labels in problems.items())
     return Sweep(directory, scene, engine or DEFAULT, tuple(over), tuple(runs.values()))
+
+
+def with_durations(sweep: Sweep, durations: Mapping[str, float]) -> Sweep:
+    """The sweep with other durations of the runs of these names [t0].
+
+    Raises:
+        SceneError: for a duration that the scene refuses.
+    """
+    runs = (
+        replace(run, scene=run.scene.lasting(durations[run.folder.name]))
+        if run.folder.name in durations
+        else run
+        for run in sweep.runs
+    )
+    return replace(sweep, runs=tuple(runs))
 
 
 def store(sweep: Sweep) -> Sweep:

@@ -6,6 +6,8 @@ from analysis.findings import Findings
 from analysis.measures.settling_speed import sampled_frames
 from analysis.run_directory import RunDirectory
 
+QUANTITIES = ("bond_order", "bond_order_local")
+
 
 def measure(run: RunDirectory) -> Findings:
     """Means over time: the modulus of the mean over particles, and the mean of their moduli."""

@@ -12,6 +12,8 @@ from analysis.findings import Findings
 from analysis.measures.settling_speed import sampled_frames
 from analysis.run_directory import RunDirectory
 
+QUANTITIES = ("clusters.largest", "clusters.number", "clusters.bonds_per_colloid", "clusters.alone")
+
 FRAMES = 400  # looked at, evenly spaced
 
 

@@ -7,6 +7,8 @@ from analysis.measures.settling_speed import sampled_frames
 from analysis.run_directory import RunDirectory
 from analysis.temperature import colloid_temperature
 
+QUANTITIES = ("colloid_temperature",)
+
 TOLERANCE = 0.05
 
 

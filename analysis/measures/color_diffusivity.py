@@ -13,6 +13,13 @@ from analysis.diffusivity.color import color_diffusivity
 from analysis.findings import Findings
 from analysis.run_directory import RunDirectory
 
+QUANTITIES = (
+    "diffusivity.*.middle",
+    "diffusivity.*.surface",
+    "color_flux.*.reactions",
+    "color_flux.*.currents",
+)
+
 REACH = 0.2  # half width of the window of the local cubic fit [a0]
 NEAR = 0.1  # what is called at the surface [a0]
 STEADY = 0.05  # the rates at the two surfaces differ by less

@@ -8,6 +8,8 @@ from analysis.findings import Findings
 from analysis.measures.settling_speed import sampled_frames
 from analysis.run_directory import RunDirectory
 
+QUANTITIES = ("number_variance", "structure_factor")
+
 BOXES = 4  # along each direction
 
 

@@ -8,6 +8,8 @@ from analysis.findings import Findings
 from analysis.measures.settling_speed import sampled_frames
 from analysis.run_directory import RunDirectory
 
+QUANTITIES = ("diffusion", "diffusion.from_vacf", "diffusion.exponent")
+
 
 def measure(run: RunDirectory) -> Findings:
     """D from the MSD and from the VACF, and the exponent of the MSD."""

@@ -5,6 +5,8 @@ from analysis.findings import Findings
 from analysis.health import temperature_warnings
 from analysis.run_directory import RunDirectory
 
+QUANTITIES = ("temperature",)
+
 TOLERANCE = 0.01  # fix srd rescales to 0.993
 
 

@@ -10,6 +10,15 @@ from analysis.colors import blocks_of, estimate
 from analysis.findings import Findings
 from analysis.run_directory import RunDirectory
 
+QUANTITIES = (
+    "temperature",
+    "collision_rate",
+    "compressibility",
+    "lower_pressure",
+    "upper_pressure",
+    "contact_density",
+)
+
 FITTED = 0.2  # from a wall, where the density is extrapolated to contact [a0]
 
 

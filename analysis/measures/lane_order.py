@@ -10,6 +10,8 @@ from analysis.lane_order import lane_order, lane_order_printed
 from analysis.measures.settling_speed import sampled_frames
 from analysis.run_directory import RunDirectory
 
+QUANTITIES = ("lane_order", "lane_order_printed")
+
 
 def measure(run: RunDirectory) -> Findings:
     """Means over time of both, and the history of the first."""

@@ -8,6 +8,15 @@ from analysis.measures.slit_flow import slit_flow
 from analysis.run_directory import RunDirectory
 from run_files import RunDirectoryError
 
+QUANTITIES = (
+    "maximum_velocity",
+    "viscosity",
+    "viscosity_curvature",
+    "wall_slip",
+    "fluid_velocity",
+    "reynolds_number",
+)
+
 
 def measure(run: RunDirectory) -> Findings:
     """Maximum, viscosity by (3.15) of tabatabaei-2009 and by the curvature, wall slip.

@@ -4,6 +4,8 @@ from analysis import correlated_mean
 from analysis.findings import Findings
 from analysis.run_directory import RunDirectory
 
+QUANTITIES = ("temperature", "potential_energy", "mean_velocity_x")
+
 
 def measure(run: RunDirectory) -> Findings:
     """The mean over time of every column."""

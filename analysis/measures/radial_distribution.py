@@ -9,6 +9,8 @@ from analysis.measures.settling_speed import sampled_frames
 from analysis.radial_distribution import RadialDistribution, radial_distribution
 from analysis.run_directory import RunDirectory
 
+QUANTITIES = ("radial_distribution.peak_height",)
+
 BINS = 50  # in a diameter
 FRAMES = 400  # looked at, evenly spaced
 

@@ -10,6 +10,8 @@ from analysis.drawing import one_panel
 from analysis.findings import Findings
 from analysis.run_directory import RunDirectory
 
+QUANTITIES = ("reacted_speed.*",)
+
 
 def measure(run: RunDirectory) -> Findings:
     """Mean speed for every reaction probability, beside that of all visits to the surfaces.

@@ -4,6 +4,8 @@ from analysis import correlated_mean
 from analysis.findings import Findings
 from analysis.run_directory import RunDirectory
 
+QUANTITIES = ("rotational_temperature",)
+
 
 def measure(run: RunDirectory) -> Findings:
     """Mean over time. No warning: without friction between colloids nothing drives it to 1."""

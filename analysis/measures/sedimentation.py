@@ -13,6 +13,12 @@ from analysis.measures.settling_speed import sampled_frames
 from analysis.run_directory import RunDirectory
 from analysis.sedimentation import SettlingSpeeds, settling_speeds
 
+QUANTITIES = (
+    "settling_speed.zero_momentum",
+    "settling_speed.relative_to_fluid",
+    "settling_speed.zero_volume_flux",
+)
+
 
 def measure(run: RunDirectory) -> Findings:
     """Means over time of the speed down the pull, which is along z, in each frame."""

@@ -11,6 +11,8 @@ from analysis.run_directory import RunDirectory
 from analysis.settling import SettlingSeries, settling_series
 from run_files import RunDirectoryError
 
+QUANTITIES = ("settling_speed", "settling_speed_rest")
+
 
 def measure(run: RunDirectory) -> Findings:
     """Means over time in both frames, and their history."""

@@ -11,6 +11,8 @@ from analysis.findings import Findings
 from analysis.measures.settling_speed import sampled_frames
 from analysis.run_directory import RunDirectory
 
+QUANTITIES = ("shear_flow.rate",)
+
 LAYERS = 10
 
 

@@ -4,6 +4,8 @@ from analysis.current import viscosity
 from analysis.findings import Findings
 from analysis.run_directory import RunDirectory
 
+QUANTITIES = ("shear_viscosity",)
+
 
 def measure(run: RunDirectory) -> Findings:
     """-<P_xy> over the rate of the motion."""

@@ -10,6 +10,8 @@ from analysis.findings import Findings
 from analysis.run_directory import RunDirectory
 from analysis.shear_wave import decay_viscosity, wave_amplitude
 
+QUANTITIES = ("viscosity",)
+
 
 def measure(run: RunDirectory) -> Findings:
     """The viscosity of the whole record after the equilibration, and the amplitude in time."""

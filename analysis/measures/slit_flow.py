@@ -10,6 +10,8 @@ from analysis.estimate import Estimate
 from analysis.findings import Findings
 from analysis.run_directory import RunDirectory
 
+QUANTITIES = ("fluid_velocity", "reynolds_number")
+
 
 def measure(run: RunDirectory) -> Findings:
     """Mean velocity and Reynolds number (4.11), and the mean profile."""

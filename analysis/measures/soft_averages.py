@@ -9,6 +9,17 @@ from analysis.estimate import Estimate
 from analysis.findings import Findings
 from analysis.run_directory import RunDirectory
 
+QUANTITIES = (
+    "kinetic_temperature",
+    "configurational_temperature",
+    "potential_energy",
+    "pressure",
+    "pressure_xy",
+    "current",
+    "mobility",
+    "thermostat_friction",
+    "thermostat_multiplier",
+)
 SUMS = ("force_squares", "laplacians")
 LOW = 0.02  # of T: a configurational thermostat that is further off has not settled
 

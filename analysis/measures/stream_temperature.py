@@ -6,6 +6,8 @@ from analysis.kinetic_temperature import stream_temperature
 from analysis.measures.settling_speed import sampled_frames
 from analysis.run_directory import RunDirectory
 
+QUANTITIES = ("stream_temperature",)
+
 
 def measure(run: RunDirectory) -> Findings:
     """Its mean over time."""

@@ -13,6 +13,8 @@ from analysis.suspension_diffusion import (
     suspension_diffusion,
 )
 
+QUANTITIES = ("diffusion.msd", "diffusion.green_kubo", "diffusion.infinite_box")
+
 
 def measure(run: RunDirectory) -> Findings:
     """D by the mean squared displacement, by Green and Kubo, and in an infinite box."""

@@ -13,6 +13,8 @@ from analysis.measures.settling_speed import sampled_frames
 from analysis.normality import FALSE_ALARMS, normality
 from analysis.run_directory import RunDirectory
 
+QUANTITIES = ("velocity_distribution.excess_kurtosis.*",)
+
 FORGOTTEN = 10  # relaxation times of Stokes's friction
 
 

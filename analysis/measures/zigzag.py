@@ -11,6 +11,8 @@ from analysis.findings import Findings
 from analysis.measures.settling_speed import sampled_frames
 from analysis.run_directory import RunDirectory
 
+QUANTITIES = ("zigzag.amplitude_rms",)
+
 
 def measure(run: RunDirectory) -> Findings:
     """Amplitudes, beside what unrelated displacements would give, and their history."""

@@ -5,11 +5,20 @@ from typing import Annotated, Any
 
 import typer
 
+from lammps_inputs import Scene, SceneError
 from lammps_inputs.deck import warnings
 from lammps_inputs.engines import default_engine
 from narrows.messages import say, user_errors, warn
 from narrows.progress import finish_with_progress
-from narrows.scene_options import ENGINES, SceneFile, SceneName, Settings, scene_of
+from narrows.scene_options import (
+    ENGINES,
+    Longest,
+    SceneFile,
+    SceneName,
+    Settings,
+    Until,
+    scene_of,
+)
 from run_files.manifest import read_manifest
 from srd_driver import Simulation
 from srd_driver.parallel import agree, communicator
@@ -30,6 +39,8 @@ def run(
     checkpoint_interval: Annotated[
         float, typer.Option(min=0.0, help="time between two checkpoints [t0]")
     ] = 20.0,
+    until: Until = None,
+    longest: Longest = None,
 ) -> None:
     """Run a scene into a run directory; alone or under mpirun."""
     with user_errors():
@@ -39,6 +50,11 @@ def run(
         chosen = scene_of(scene, file, settings, stored)
         engine = engine or engine_before or default_engine(chosen.system)
         warn(warnings(chosen, engine))
+        if until:
+            _run_until(chosen, engine, out, resume, checkpoint_interval, until, longest)
+            return
+        if longest is not None:
+            raise SceneError.of_field("longest", longest, "only with --until")
         with (
             Simulation(chosen, engine, out, resume, checkpoint_interval) as simulation,
             stopped_by_signals(simulation),
@@ -52,6 +68,31 @@ def run(
             if not simulation.finished:
                 raise KeyboardInterrupt("go on from the newest checkpoint by --resume")
             say(f"{out}: at time {simulation.time:g}; next: narrows analyze {out}")
+
+
+def _run_until(
+    scene: Scene,
+    engine: str,
+    out: Path,
+    resume: bool,
+    checkpoint_interval: float,
+    until: list[str],
+    longest: float | None,
+) -> None:
+    from narrows.until import Look, precisions_of, run_until  # here, so that `--help` stays fast
+
+    asked = precisions_of(until, scene)
+
+    def finish(simulation: Simulation) -> None:
+        with stopped_by_signals(simulation):
+            finish_with_progress(simulation)
+
+    def report(look: Look) -> None:
+        told = "; ".join(each.told(look.estimates[each.quantity]) for each in asked)
+        further = f"; on to {look.next_duration:g} t0" if look.next_duration else ""
+        say(f"{out}: after {look.duration:g} t0 {told}{further}")
+
+    run_until(scene, until, out, engine, longest, resume, checkpoint_interval, finish, report)
 
 
 def _stored(directory: Path) -> tuple[dict[str, Any], str | None]:

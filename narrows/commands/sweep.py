@@ -2,8 +2,9 @@
 
 import shlex
 import sys
+from collections.abc import Sequence
 from pathlib import Path
-from typing import Annotated, Any
+from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 
@@ -11,14 +12,25 @@ from lammps_inputs import SceneError, parse_assignment
 from lammps_inputs.deck import warnings
 from narrows.messages import say, user_errors, warn
 from narrows.progress import progress_of_runs
-from narrows.scene_options import ENGINES, SceneFile, SceneName, Settings, scene_fields
+from narrows.scene_options import (
+    ENGINES,
+    Longest,
+    SceneFile,
+    SceneName,
+    Settings,
+    Until,
+    scene_fields,
+)
 from run_files import RunDirectoryError
 from run_files.manifest import CHANGEABLE
 from srd_driver import RunError, sweep_definition
 from srd_driver.parallel import communicator
 from srd_driver.signals import interrupted_by_signals
-from srd_driver.sweep import Run, available_cores, is_finished, run_all
+from srd_driver.sweep import Failure, Run, available_cores, is_finished, run_all
 from srd_driver.sweep_definition import Sweep
+
+if TYPE_CHECKING:
+    from analysis import SweepTable
 
 
 def sweep(
@@ -43,9 +55,15 @@ def sweep(
             metavar="FILE", help="run nothing; write a command for each run (- for stdout)"
         ),
     ] = None,
+    until: Until = None,
+    longest: Longest = None,
 ) -> None:
     """Run a scene at all combinations of field values; again, to go on or to extend it."""
     with user_errors():
+        if commands and until:
+            raise SceneError(["--commands: not with --until, which decides while runs go on"])
+        if longest is not None and not until:
+            raise SceneError.of_field("longest", longest, "only with --until")
         if communicator().size > 1:
             raise RunError("a sweep starts a process for each run itself: give it without mpirun")
         asked = sweep_definition.plan(
@@ -53,6 +71,9 @@ def sweep(
         )
         told = (warning for run in asked.runs for warning in warnings(run.scene, run.engine))
         warn(dict.fromkeys(told))
+        if until:
+            _execute_until(asked, jobs or available_cores(), until, longest)
+            return
         sweep_definition.store(asked)
         if commands:
             _write_commands(asked, commands)
@@ -128,14 +149,36 @@ def _execute(asked: Sweep, jobs: int) -> None:
             failures = run_all(asked.runs, jobs, report_runs)
             table = tabulate(asked.directory, jobs, renew=False, report=report_analysis)
     except KeyboardInterrupt:
-        done = sum(_is_done(run) for run in asked.runs)
-        raise KeyboardInterrupt(
-            f"{done} of {len(asked.runs)} runs are finished; give the same command again to go on"
-        ) from None
+        raise _interrupted(asked) from None
+    _tell(asked, failures, table)
+
+
+def _execute_until(asked: Sweep, jobs: int, until: list[str], longest: float | None) -> None:
+    from narrows.until import sweep_until
+
+    try:
+        with interrupted_by_signals(), progress_of_runs() as (report_runs, report_analysis):
+            done = sweep_until(asked, until, jobs, longest, report_runs, report_analysis)
+    except KeyboardInterrupt:
+        raise _interrupted(asked) from None
+    _tell(asked, done.failures, done.table, done.missed)
+
+
+def _interrupted(asked: Sweep) -> KeyboardInterrupt:
+    done = sum(_is_done(run) for run in asked.runs)
+    return KeyboardInterrupt(
+        f"{done} of {len(asked.runs)} runs are finished; give the same command again to go on"
+    )
+
+
+def _tell(
+    asked: Sweep, failures: list[Failure], table: "SweepTable", missed: Sequence[str] = ()
+) -> None:
     say(
         f"{asked.directory}: {len(asked.runs) - len(failures)} of {len(asked.runs)} runs finished; "
         f"{len(table.rows)} points in {asked.directory / 'table.csv'}"
     )
     problems = [f"{failure.run.folder.name}: {failure.message}" for failure in failures]
+    problems += [f"not precise at the longest time: {point}" for point in missed]
     if problems or table.problems:
         raise RunError("\n".join(problems + table.problems))

@@ -10,6 +10,9 @@ import pytest
 from scipy.integrate import quad
 
 from analysis import RunDirectoryError, analyze
+from analysis.analyze import estimates
+from analysis.measures import may_find
+from run_files.manifest import read_manifest
 from tests.analysis import run_writer
 from tests.analysis.run_writer import (
     half_cells,
@@ -32,6 +35,8 @@ def analyzed(path: Path) -> dict[str, Any]:
         raise AssertionError(f"{constant} is no JSON")
 
     assert json.loads((path / "summary.json").read_text(), parse_constant=refuse) == summary
+    declared = read_manifest(path).system.measures
+    assert [name for name in estimates(summary) if not may_find(declared, name)] == []
     assert not [file for file in path.iterdir() if file.name.startswith(".")]  # drafts
     assert summary["figures"] == sorted(file.name for file in path.glob("*.png"))
     assert all((path / name).read_bytes().startswith(PNG) for name in summary["figures"])
