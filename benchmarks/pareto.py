@@ -1,6 +1,7 @@
 """Error of every quantity against run time, for all engines and settings: chart and table.
 
-    python benchmarks/pareto.py --out runs/pareto [--quick] [--jobs 2]
+    python benchmarks/pareto.py --out runs/pareto [--quick] [--jobs 2] [--page docs/pareto.md]
+        [--chart narrows/chart.json]
 
 1. The speed of each setting is measured, processor seconds for a unit of simulated time: all
    settings in turn, several rounds, the median of each; kept in speed.json.
@@ -39,7 +40,8 @@ from srd_driver.sweep import Run, available_cores, run_all
 
 BUDGET, QUICK_BUDGET = 6.0, 2.0  # processor seconds of a setting
 ROUNDS, PIECE_SECONDS = 3, 0.25  # of the measurement of speed
-TRUTH_FACTOR = 10  # the converged run has a longer budget
+CAREFUL = 8  # budgets of settings that differ by little
+CONVERGED = 20  # budgets of the run that is the truth
 TARGETS = (0.1, 0.03, 0.01)
 SECONDS = np.geomspace(1, 1e5, 101)  # run times that the chart shows
 COLOURS = {"srd": "C1", "mpc": "C0", "reference": "C2"}
@@ -50,30 +52,33 @@ Summary = dict[str, Any]
 
 @dataclass(frozen=True)
 class Setting:
-    """An engine and the fields of a scene that are not those of its study."""
+    """An engine and the fields of a scene that are not those of its study; and its budgets."""
 
     engine: str
     changes: tuple[tuple[str, Any], ...] = ()
+    budgets: int = 1
 
     def __str__(self) -> str:
         return " ".join([self.engine, *(f"{name}={value}" for name, value in self.changes)])
 
 
-def setting(engine: str, **changes: Any) -> Setting:
-    return Setting(engine, tuple(changes.items()))
+def setting(engine: str, budgets: int = 1, **changes: Any) -> Setting:
+    return Setting(engine, tuple(changes.items()), budgets)
 
 
 @dataclass(frozen=True)
 class Quantity:
     """A number of a run that is compared with its truth: theory's, or that of a converged run.
 
-    Settings that change one of the `physics` have another truth, and are left out.
+    Settings that change one of the `physics` have another truth, and are left out. `key` is the
+    quantity in summary.json that has the same relative error, for the chart of `narrows advise`.
     """
 
     name: str
     measure: Callable[[Summary, Scene], Estimate]
     truth: float | Setting
     physics: tuple[str, ...] = ()
+    key: str | None = None
 
     def concerns(self, chosen: Setting) -> bool:
         return not any(name in self.physics for name, _ in chosen.changes)
@@ -102,8 +107,7 @@ class Study:
 
 
 def entry(summary: Summary, name: str) -> Estimate:
-    found = summary[name]
-    return Estimate(found["value"], found["error"], found.get("reason"))
+    return Estimate.of_json(summary[name])
 
 
 def theory_of(scene: Scene) -> float:
@@ -153,8 +157,9 @@ def mobility(summary: Summary, scene: Scene) -> Estimate:
     return entry(summary, "settling_speed_rest").scaled(1 / force)
 
 
-PAPER = setting("mpc", md_steps_per_collision=30)
-ONE_COLLOID = setting("mpc", gravity=0.1)
+PAPER = setting("mpc", CONVERGED, md_steps_per_collision=30)
+ONE_COLLOID = setting("mpc", CONVERGED, gravity=0.1)
+FLUID = ("density", "collision_time")
 STUDIES = (
     Study(
         "bulk",
@@ -169,7 +174,7 @@ STUDIES = (
             setting("mpc", width=16, duration=20),
             setting("reference"),
         ),
-        (Quantity("viscosity, shear wave", relative("viscosity"), 1.0),),
+        (Quantity("viscosity, shear wave", relative("viscosity"), 1.0, key="viscosity"),),
         stationary=False,
     ),
     Study(
@@ -187,7 +192,12 @@ STUDIES = (
             setting("reference", equilibration=150),
         ),
         (
-            Quantity("viscosity, Poiseuille curvature", relative("viscosity_curvature"), 1.0),
+            Quantity(
+                "viscosity, Poiseuille curvature",
+                relative("viscosity_curvature"),
+                1.0,
+                key="viscosity_curvature",
+            ),
             Quantity("wall slip", plain("wall_slip", 0.01), 0.0),
         ),
     ),
@@ -195,7 +205,7 @@ STUDIES = (
         "channel",
         {"equilibration": 50},
         (
-            *(setting("mpc", md_steps_per_collision=steps) for steps in (15, 5, 3, 1)),
+            *(setting("mpc", CAREFUL, md_steps_per_collision=steps) for steps in (15, 5, 3, 1)),
             setting("mpc", gravity=0.3, md_steps_per_collision=5),
             *(
                 setting("mpc", thermostat=thermostat)
@@ -212,10 +222,15 @@ STUDIES = (
             setting("reference", md_steps_per_collision=5, equilibration=5),
         ),
         (
-            Quantity("settling speed", speed_over_gravity, PAPER, ("density", "collision_time")),
-            Quantity("inverse drag", inverse_drag, PAPER),
-            Quantity("fluid temperature", plain("temperature"), 1.0),
-            Quantity("colloid temperature", plain("colloid_temperature"), 1.0),
+            Quantity("settling speed", speed_over_gravity, PAPER, FLUID),
+            Quantity("inverse drag", inverse_drag, PAPER, key="settling_speed"),
+            Quantity("fluid temperature", plain("temperature"), 1.0, key="temperature"),
+            Quantity(
+                "colloid temperature",
+                plain("colloid_temperature"),
+                1.0,
+                key="colloid_temperature",
+            ),
         ),
         converged=PAPER,
     ),
@@ -228,7 +243,7 @@ STUDIES = (
             setting("srd"),
             setting("srd", md_steps_per_collision=5),
         ),
-        (Quantity("colloid diffusion", mobility, ONE_COLLOID),),
+        (Quantity("colloid diffusion", mobility, ONE_COLLOID, key="diffusion"),),
         converged=ONE_COLLOID,
     ),
 )
@@ -238,7 +253,8 @@ STUDIES = (
 class Result:
     """A setting's number: what a run of `seconds` processor seconds gives, against the truth."""
 
-    quantity: str
+    quantity: Quantity
+    scene: str
     setting: Setting
     value: float
     statistical: float
@@ -283,7 +299,7 @@ def plan(
     """The runs that spend the budget on each setting."""
     planned: dict[Setting, list[Run]] = {}
     for chosen in study.all_settings:
-        seconds = budget * (TRUTH_FACTOR if chosen == study.converged else 1)
+        seconds = budget * chosen.budgets
         scene = study.make(chosen)
         affordable = seconds / speeds[_name(number, chosen)]
         if study.stationary:
@@ -336,7 +352,8 @@ def evaluate(
                 continue
             simulated = sum(summary["simulated_time"] for summary, _ in summaries[chosen])
             yield Result(
-                quantity.name,
+                quantity,
+                study.scene,
                 chosen,
                 found.value,
                 found.error / unit,
@@ -349,8 +366,8 @@ def evaluate(
 def recommended(results: list[Result]) -> str:
     """For each quantity and wanted error the setting that reaches it first."""
     rows = ["| quantity | error | setting | processor time |", "|---|---|---|---|"]
-    for name in dict.fromkeys(result.quantity for result in results):
-        of_it = [result for result in results if result.quantity == name]
+    for name in dict.fromkeys(result.quantity.name for result in results):
+        of_it = [result for result in results if result.quantity.name == name]
         for target in TARGETS:
             best = min(of_it, key=lambda result: result.time_to(target))
             seconds = best.time_to(target)
@@ -369,17 +386,36 @@ def full_table(results: list[Result]) -> str:
         after = result.statistical * math.sqrt(result.seconds / 10)
         deviation = f"{result.deviation:+.2%} +- {result.deviation_error:.2%}"
         numbers = (f"{result.value:.4g}", deviation, f"{after:.2%}")
-        rows.append((result.quantity, str(result.setting), *numbers))
+        rows.append((result.quantity.name, str(result.setting), *numbers))
     return table(columns, rows)
+
+
+def chart_of(results: list[Result]) -> dict[str, Any]:
+    """What `narrows advise` reads (`narrows/chart.py`)."""
+    return {
+        "settings": [
+            {
+                "scene": result.scene,
+                "quantity": result.quantity.key,
+                "engine": result.setting.engine,
+                "fields": dict(result.setting.changes),
+                "deviation": result.deviation,
+                "deviation_error": result.deviation_error,
+                "error_after_10_s": result.statistical * math.sqrt(result.seconds / 10),
+            }
+            for result in results
+            if result.quantity.key
+        ]
+    }
 
 
 def draw(results: list[Result], file: Path) -> None:
     """A panel a quantity: error against run time of each setting, and the front."""
-    names = list(dict.fromkeys(result.quantity for result in results))
+    names = list(dict.fromkeys(result.quantity.name for result in results))
     sheet = Figure(figsize=(16, 4 * math.ceil(len(names) / 4)), layout="constrained")
     panels = sheet.subplots(math.ceil(len(names) / 4), 4, squeeze=False).flat
     for name, panel in zip(names, panels, strict=False):
-        of_it = [result for result in results if result.quantity == name]
+        of_it = [result for result in results if result.quantity.name == name]
         for result in of_it:
             colour = COLOURS[result.setting.engine]
             panel.loglog(SECONDS, result.error(SECONDS), color=colour, lw=0.8)
@@ -401,6 +437,7 @@ def main() -> None:
     parser.add_argument("--quick", action="store_true", help=f"{QUICK_BUDGET:g} s a setting")
     parser.add_argument("--jobs", type=int, default=available_cores())
     parser.add_argument("--page", type=Path, help="Markdown page whose table is renewed")
+    parser.add_argument("--chart", type=Path, help="file of the chart that `narrows advise` reads")
     options = parser.parse_args()
     folder: Path = options.out
     folder.mkdir(parents=True, exist_ok=True)
@@ -429,6 +466,8 @@ def main() -> None:
     draw(results, folder / "pareto.png")
     if options.page:
         replace_block(options.page, "pareto", full_table(results))
+    if options.chart:
+        replace_text(options.chart, json.dumps(chart_of(results), indent=1) + "\n")
 
 
 if __name__ == "__main__":

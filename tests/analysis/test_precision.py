@@ -66,7 +66,7 @@ def test_the_quantity_that_needs_most_decides() -> None:
     known = {"settling_speed": Estimate(1.0, 0.01), "temperature": Estimate(1.0, 0.0012)}
     assert growth(asked, known) == pytest.approx(MARGIN * 1.44)
     assert growth(asked[:1], known) == 1
-    with pytest.raises(ValueError, match="^viscosity: not among .* settling_speed, temperature$"):
+    with pytest.raises(ValueError, match=r"^viscosity: not among .* settling_speed, temperature$"):
         growth([Precision.of_text("viscosity=1")], known)
 
 
