@@ -5,6 +5,7 @@ import sys
 
 import typer
 
+from narrows.commands.advise import advise
 from narrows.commands.analyze import analyze
 from narrows.commands.deck import deck
 from narrows.commands.diffusivity import diffusivity
@@ -21,7 +22,7 @@ app = typer.Typer(
     pretty_exceptions_enable=False,
     help="Particles driven through narrow spaces: scenes, LAMMPS decks, runs and their analysis.",
 )
-for command in (deck, run, sweep, status, analyze, diffusivity, reproduce, units):
+for command in (advise, deck, run, sweep, status, analyze, diffusivity, reproduce, units):
     app.command()(command)
 app.add_typer(lattice_app, name="lattice")
 
