@@ -1,11 +1,13 @@
 """Numbers beside those of a paper, and whether they agree.
 
 A measured number agrees with a printed one if they differ by no more than twice the joint standard
-error plus what the printed digits leave open. A paper's claim without a number (it grows, it does
+error plus what the printed digits leave open; of errors with few degrees of freedom, by what is as
+improbable by Student's t. A paper's claim without a number (it grows, it does
 not depend on phi) is put as one: a measured number that the claim says is positive, or zero.
 """
 
 import json
+import math
 from collections.abc import Sequence
 from dataclasses import dataclass
 from decimal import Decimal
@@ -15,7 +17,7 @@ from typing import Any, Literal
 from analysis.estimate import Estimate
 from run_files.writing import replace_text
 
-SIGNIFICANT = 2.0  # standard errors
+CONFIDENCE = 0.9545  # that of two standard errors of a normal distribution
 
 Sign = Literal["zero", "positive"]
 
@@ -67,13 +69,14 @@ class Result:
 
     def as_json(self) -> dict[str, Any]:
         """The entry; numbers that are not known are null."""
-        paper = self.paper
+        paper, freedom = self.paper, self.measured.freedom
         notes = [note for note in (self.measured.reason, self.note) if note]
         return {
             "figure": self.figure,
             "quantity": self.quantity,
             "value": self.measured.value,
             "error": self.measured.error,
+            "freedom": freedom if math.isfinite(freedom) else None,
             "paper": paper.value if paper else None,
             "paper_error": paper.error if paper else None,
             "paper_reading": paper.reading if paper else None,
@@ -94,10 +97,10 @@ def compared(
     """A number beside the paper's."""
     agrees = None
     if value.value is not None and value.error is not None:
-        joint = (value.error**2 + (paper.error or 0.0) ** 2) ** 0.5
+        apart = value - Estimate(paper.value, paper.error or 0.0)
         rounding = 1e-9 * abs(paper.value)
-        allowed = SIGNIFICANT * joint + paper.reading + rounding
-        agrees = bool(abs(value.value - paper.value) <= allowed)
+        allowed = apart.half_width(CONFIDENCE) + paper.reading + rounding
+        agrees = bool(abs(apart.number) <= allowed)
     return Result(figure, quantity, value, paper, None, agrees, note)
 
 
@@ -111,7 +114,7 @@ def claimed(
     """
     agrees = None
     if value.value is not None and value.error is not None:
-        reach = SIGNIFICANT * value.error
+        reach = value.half_width(CONFIDENCE)
         if sign == "zero":
             agrees = bool(abs(value.value) <= reach)
         elif abs(value.value) > reach:

@@ -57,6 +57,14 @@ def test_agreement_with_a_claim(value: float | None, sign: Sign, agrees: bool | 
     assert claimed("1", "x", Estimate(value, 0.1), "it grows", sign).agrees is agrees
 
 
+def test_an_error_of_few_degrees_of_freedom_reaches_further() -> None:
+    """Student's t of 3 degrees of freedom: 95.45 % lie within 3.31 errors."""
+    for value, agrees in ((0.32, True), (0.34, False)):
+        estimate = Estimate(value, 0.1, None, freedom=3)
+        assert claimed("1", "x", estimate, "it vanishes", "zero").agrees is agrees
+        assert compared("1", "x", estimate, PaperNumber(0.0)).agrees is agrees
+
+
 def test_results_json(tmp_path: Path) -> None:
     lower_bound = Estimate(0.3, 0.1, "at least: 2 samples are too few")
     results = [
@@ -71,6 +79,7 @@ def test_results_json(tmp_path: Path) -> None:
         "quantity": "slope",
         "value": 0.33,
         "error": 0.01,
+        "freedom": None,
         "paper": 0.34,
         "paper_error": None,
         "paper_reading": 0.01,
