@@ -80,6 +80,45 @@ class Profile:
 
 
 @dataclass(frozen=True)
+class FlowField:
+    """The fluid on a grid, each an average over the time up to its step.
+
+    Attributes:
+        steps: last engine step of each average, (K,).
+        axes: middles of the bins along each axis; about a particle, distances from it along
+            periodic axes [a0].
+        counts: particles in each bin, (K, nx, ny) or (K, nx, ny, nz).
+        velocity: their mean velocity in the laboratory, (K, nx, ny, ..., d) [a0/t0].
+        temperature: mean square velocity per dimension, the flow left in, (K, nx, ny, ...) [kBT].
+    """
+
+    steps: Steps
+    axes: tuple[Array, ...]
+    counts: Array
+    velocity: Array
+    temperature: Array
+
+    def mean(self, used: NDArray[np.bool_] | None = None) -> "FlowField":
+        """The average of those averages, every particle with the same weight; K is then 1.
+
+        Args:
+            used: which of them, (K,); default: all.
+        """
+        chosen = np.full(len(self.steps), True) if used is None else used
+        counts = self.counts[chosen]
+        total = np.maximum(counts.sum(axis=0), 1e-300)
+        velocity = (counts[..., None] * self.velocity[chosen]).sum(axis=0) / total[..., None]
+        temperature = (counts * self.temperature[chosen]).sum(axis=0) / total
+        return FlowField(
+            self.steps[chosen][-1:],
+            self.axes,
+            counts.mean(axis=0)[None],
+            velocity[None],
+            temperature[None],
+        )
+
+
+@dataclass(frozen=True)
 class Particles:
     """The particles at every sampled step, the first at step 0.
 
@@ -333,6 +372,56 @@ class RunDirectory:
         positions, *values = (table[:, :, column] for column in columns)
         steps = self._check_steps(name, rows[:, 0], first=self.clock.sample_steps)
         return Bins(steps, positions[0], dict(zip(wanted, values, strict=True)))
+
+    def field(self, name: str = "flow") -> FlowField:
+        """The flow of the fluid on a grid, by the name of its file.
+
+        Raises:
+            RunDirectoryError: when there is none, or it is malformed, empty or has gaps.
+        """
+        grid = self.manifest.system.flow
+        if grid is None:
+            raise RunDirectoryError(f"{self.path}: no flow field was asked for (flow_interval)")
+        file = self._output(name, "flow").file
+        axes = len(grid.bins)
+        wanted = [f"Coord{axis + 1}" for axis in range(axes)]
+        wanted += ["Ncount", *(f"v{axis}" for axis in "xyz"[:axes]), "temp"]
+        columns, count, numbers = self._read_table(file, "Chunk Coord1", wanted)
+        bins = math.prod(grid.bins)
+        rows = self._reshape(file, numbers, 3 + bins * count)
+        if np.any(rows[:, 1] != bins):
+            refuse(self.path / file, f"{rows[0, 1]:g} bins; the manifest says {bins}")
+        every = grid.samples * self.clock.sample_steps
+        expected = every * np.arange(1, len(rows) + 1)
+        if np.any(rows[:, 0] != expected):
+            wrong = int(np.flatnonzero(rows[:, 0] != expected)[0])
+            refuse(self.path / file, f"step {expected[wrong]} expected, {rows[wrong, 0]:g} found")
+        table = rows[:, 3:].reshape(len(rows), *grid.bins, count)[..., columns]
+        places = [
+            np.moveaxis(table[0, ..., a], a, 0).reshape(grid.bins[a], -1) for a in range(axes)
+        ]
+        return FlowField(
+            expected,
+            tuple(place[:, 0] for place in places),
+            table[..., axes],
+            table[..., axes + 1 : 2 * axes + 1],
+            table[..., -1],
+        )
+
+    def flow_used(self, field: FlowField) -> NDArray[np.bool_]:
+        """Which averages of a flow field lie after the equilibration, (K,).
+
+        Raises:
+            RunDirectoryError: when none does.
+        """
+        every = int(field.steps[0])
+        used = field.steps - every >= self.equilibration_steps
+        if not used.any():
+            raise RunDirectoryError(
+                f"{self.path}: no average of the flow lies after the equilibration, which ends at "
+                f"step {self.equilibration_steps}; each is over {every} steps"
+            )
+        return np.asarray(used)
 
     def universe(self, name: str = "trajectory") -> MDAnalysis.Universe:
         """The particles as an MDAnalysis Universe: wrapped positions, masses, time from the step.

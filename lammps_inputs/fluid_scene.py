@@ -1,22 +1,29 @@
 """What scenes with an MPC fluid have in common."""
 
+import math
 from collections.abc import Iterator
+from dataclasses import replace
+from functools import cached_property
 from typing import Annotated
 
 from pydantic import Field
 
 from lammps_inputs.limits import solvent_warnings
-from lammps_inputs.scene import Positive, Scene
+from lammps_inputs.scene import NonNegative, Positive, Scene
 from lammps_inputs.system import (
+    FLOW,
     SIZES,
     Box,
     Clock,
+    FlowField,
     Hydrodynamics,
     Rotation,
     Solvent,
     System,
     Thermostat,
 )
+
+MOST_BINS = 1_000_000  # of a flow field: some 60 bytes each in every output
 
 
 class FluidScene(Scene):
@@ -36,6 +43,13 @@ class FluidScene(Scene):
         description="on; or a random solvent: shuffle (velocities interchanged), bath (redrawn)",
     )
     thermostat: Thermostat = Field(default="layer", description="thermostat of the fluid")
+    flow_interval: NonNegative = Field(
+        default=0.0, description="time that each flow field is averaged over; 0: none [t0]"
+    )
+    flow_bin: Positive = Field(default=0.5, description="edge of the bins of the flow field [a0]")
+    flow_around: Annotated[int, Field(ge=0)] = Field(
+        default=0, description="number of the colloid that the flow field is about; 0: none"
+    )
 
     def clock(self, md_steps: int = 1) -> Clock:
         """The clock of the scene's times, by so many steps of molecular dynamics a collision."""
@@ -62,13 +76,45 @@ class FluidScene(Scene):
             shear_wave=shear_wave,
         )
 
+    @cached_property
+    def system(self) -> System:
+        """What the scene builds, and the flow field that is wanted of its fluid."""
+        system = self.build()
+        if not self.flow_interval:
+            return system
+        samples = max(1, round(self.flow_interval / self.sampling_interval))
+        bins = tuple(max(1, round(size / self.flow_bin)) for size in system.box.sizes)
+        return replace(
+            system,
+            flow=FlowField(bins, samples, self.flow_around),
+            outputs=(*system.outputs, FLOW),
+            measures=(*system.measures, "flow_field"),
+        )
+
     def problems(self) -> Iterator[str]:
         yield from super().problems()
         system: System = self.system
+        yield from self._flow_problems(system)
         yield from _box_problems(system.box)
         fluid = system.solvent
         if fluid and fluid.particles < 2:
             yield f"density = {self.density!r}: leaves {fluid.particles} fluid particles"
+
+    def _flow_problems(self, system: System) -> Iterator[str]:
+        if self.flow_around > system.particles:
+            most = system.particles
+            yield f"flow_around = {self.flow_around!r}: must be at most {most}, the last colloid"
+        if system.flow and math.prod(system.flow.bins) > MOST_BINS:
+            yield f"flow_bin = {self.flow_bin!r}: makes more than {MOST_BINS} bins"
+        clock = system.clock
+        if system.flow:
+            every = system.flow.samples * clock.sample_steps
+            first = math.ceil(clock.equilibration_steps / every)
+            if clock.total_steps // every <= first:
+                yield (
+                    f"flow_interval = {self.flow_interval!r}: no whole average of the run's "
+                    f"{clock.end:g} t0 begins after its equilibration of {self.equilibration:g}"
+                )
 
     def warnings(self) -> Iterator[str]:
         yield from super().warnings()

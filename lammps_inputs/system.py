@@ -409,7 +409,22 @@ class Continuation(Placement, Protocol):
         """Why that run cannot be gone on from, in one line."""
 
 
-Kind = Literal["trajectory", "table", "profile"]
+Kind = Literal["trajectory", "table", "profile", "flow"]
+
+
+@dataclass(frozen=True)
+class FlowField:
+    """Density and velocity of the fluid on a grid, in the laboratory or about a particle.
+
+    Attributes:
+        bins: along each axis.
+        samples: sampling intervals that an average is over.
+        around: number of the particle, from 1, in the middle of all periodic axes; 0: none.
+    """
+
+    bins: tuple[int, ...]
+    samples: int
+    around: int = 0
 
 
 @dataclass(frozen=True)
@@ -418,7 +433,8 @@ class Output:
 
     Attributes:
         file: its name.
-        kind: trajectory of particles; table of averages; profile, averages by bins.
+        kind: trajectory of particles; table of averages; profile, averages by bins; flow, of the
+            fluid on a grid, every so many samples as its `FlowField` says.
         columns: beside the step. Those of a table are quantities that the engine averages.
     """
 
@@ -436,6 +452,7 @@ FLUID_PROFILE = Output(
     "fluid_profile.dat", "profile", ("Coord1", "Ncount", "density/number", "vx", "temp")
 )
 FLUID_AVERAGES = Output("observables.dat", "table", ("fluid_temperature", "mean_velocity_x"))
+FLOW = Output("flow.dat", "flow", ("Ncount", "density/number", "temp"))
 SUSPENSION_AVERAGES = Output(
     "observables.dat",
     "table",
@@ -464,6 +481,7 @@ class System:
         outputs: what the run writes.
         measures: what `narrows analyze` makes of it, names of `analysis/measures`.
         reactions: of colours, if any.
+        flow: field of the fluid, if one is wanted.
     """
 
     box: Box
@@ -479,6 +497,7 @@ class System:
     rest: Rest | None = None
     solvent: Solvent | None = None
     reactions: Reactions | None = None
+    flow: FlowField | None = None
 
     @property
     def particles(self) -> int:

@@ -41,6 +41,7 @@ FixMPC<D>::FixMPC(LAMMPS *lmp, int narg, char **arg) :
   comm_forward = comm_reverse = MpcColloids<D>::MOST_CARRIED;
   if (!given_.profile_file.empty())
     profile_ = std::make_unique<MpcProfile>(lmp, given_.profile_file, given_.profile_append, id);
+  if (given_.flow.every) flow_ = std::make_unique<MpcFlow<D>>(lmp, given_.flow, processes_, id);
 }
 
 template <int D> int FixMPC<D>::setmask()
@@ -157,7 +158,8 @@ template <int D> void FixMPC<D>::write_restart(FILE *file)
   if (!solver_ || open_)
     error->all(FLERR, "fix mpc: restart: the step {} must be a multiple of N = {}",
                update->ntimestep, given_.every);
-  state_->write_restart(file, processes_.everyones(colloids_.pulls));
+  state_->write_restart(file, processes_.everyones(colloids_.pulls),
+                        flow_ ? flow_->state() : std::vector<double>{});
 }
 
 template <int D> void FixMPC<D>::restart(char *buffer)
@@ -166,8 +168,11 @@ template <int D> void FixMPC<D>::restart(char *buffer)
     const auto header = mpc::read_restart_header<D>(buffer, given_.seed);
     make_solver(static_cast<double>(header.fluid.particles));
     check_processes();
+    auto restored = state_->restart(buffer);
+    if (flow_ && !restored.average.empty() && !flow_->restore(restored.average))
+      throw mpc::Fault("restart: its flow has not the bins of this fix");
     auto &pulls = colloids_.pulls;
-    pulls = state_->restart(buffer);
+    pulls = std::move(restored.pulls);
     if (couples_every_step())    // images of a colloid are of one process, atoms may change theirs
       pulls.erase(std::remove_if(pulls.begin(), pulls.end(),
                                  [&](const auto &pull) { return pull.process != comm->me; }),
@@ -247,9 +252,18 @@ template <int D> void FixMPC<D>::end_of_step()
   if (given_.momentum_every > 0 && solver_->collisions() % given_.momentum_every == 0)
     remove_momentum();
   if (coupling()) colloids_.see(interval_);
-  if (!profile_) return;
-  if (update->ntimestep % given_.profile_every == 0) profile_->look(layers());
-  if (update->ntimestep % given_.profile_frequency == 0) profile_->write(solver_->particles());
+  const bigint step = update->ntimestep;
+  if (profile_) {
+    if (step % given_.profile_every == 0) profile_->look(layers());
+    if (step % given_.profile_frequency == 0) profile_->write(solver_->particles());
+  }
+  if (flow_) {
+    if (step % given_.flow.every == 0) {
+      solver_->turn();
+      flow_->look(solver_->fluid(), solver_->grid());
+    }
+    if (step % given_.flow.frequency == 0) flow_->write(solver_->particles());
+  }
 }
 
 // Take the total momentum from all velocities alike.

@@ -9,6 +9,7 @@
 #include "core/solver.h"
 #include "mpc_arguments.h"
 #include "mpc_colloids.h"
+#include "mpc_flow.h"
 #include "mpc_profile.h"
 #include "mpc_state.h"
 #include "mpi_processes.h"
@@ -58,6 +59,7 @@ template <int D> class FixMPC : public Fix {
   MpiProcesses processes_;
   MpcColloids<D> colloids_;
   std::unique_ptr<MpcProfile> profile_;    // or none
+  std::unique_ptr<MpcFlow<D>> flow_;       // or none
   std::unique_ptr<mpc::Solver<D>> solver_;
   std::unique_ptr<MpcState<D>> state_;
   double interval_ = 0;

@@ -14,6 +14,12 @@
 
 using namespace LAMMPS_NS;
 
+namespace {
+
+constexpr int MOST_BINS = 10000000;    // of the flow: their sums are in the memory of each process
+
+}    // namespace
+
 template <int D>
 MpcArguments<D>::MpcArguments(LAMMPS *lmp, int narg, char **arg)
 {
@@ -148,6 +154,31 @@ MpcArguments<D>::MpcArguments(LAMMPS *lmp, int narg, char **arg)
                    arg[first + 1]);
       profile_append = choice(first + 2, "profile mode", {"file", "append"}) == "append";
       profile_file = arg[first + 3];
+    } else if (keyword == "flow") {
+      const int first = values(5 + D);
+      flow.every = utils::inumeric(FLERR, arg[first], false, lmp);
+      flow.frequency = utils::inumeric(FLERR, arg[first + 1], false, lmp);
+      if (flow.every < 1 || flow.every % every)
+        error->all(FLERR, "fix mpc: flow Nevery {}: must be a multiple of N", arg[first]);
+      if (flow.frequency < 1 || flow.frequency % flow.every)
+        error->all(FLERR, "fix mpc: flow Nfreq {}: must be a multiple of Nevery", arg[first + 1]);
+      double all = 1;
+      for (int a = 0; a < D; ++a) {
+        flow.bins[a] = utils::inumeric(FLERR, arg[first + 2 + a], false, lmp);
+        if (flow.bins[a] < 1)
+          error->all(FLERR, "fix mpc: flow {}: bins along {} must be positive",
+                     arg[first + 2 + a], "xyz"[a]);
+        all *= flow.bins[a];
+      }
+      if (all > MOST_BINS) error->all(FLERR, "fix mpc: flow: more than {} bins", MOST_BINS);
+      if (std::string(arg[first + 2 + D]) != "lab") {
+        flow.around = utils::tnumeric(FLERR, arg[first + 2 + D], false, lmp);
+        if (flow.around < 1)
+          error->all(FLERR, "fix mpc: flow {}: must be lab or the ID of an atom",
+                     arg[first + 2 + D]);
+      }
+      flow.append = choice(first + 3 + D, "flow mode", {"file", "append"}) == "append";
+      flow.file = arg[first + 4 + D];
     } else {
       error->all(FLERR, "fix mpc: unknown keyword {}", keyword);
     }

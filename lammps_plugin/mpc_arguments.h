@@ -5,6 +5,7 @@
 #include "core/force_coupling.h"
 #include "core/no_slip_walls.h"
 #include "core/reflection_coupling.h"
+#include "mpc_flow.h"
 
 #include <cstdint>
 #include <string>
@@ -42,6 +43,7 @@ template <int D> struct MpcArguments {
   int profile_every = 0, profile_frequency = 0;
   std::string profile_file;
   bool profile_append = false;
+  FlowArguments<D> flow;
 };
 
 }    // namespace LAMMPS_NS

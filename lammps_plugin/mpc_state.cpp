@@ -208,11 +208,13 @@ template <int D> void MpcState<D>::save(const std::string &name)
 
 // The whole fluid in the order each process has it, and the last forces on the colloids: orders and
 // forces decide the last bits, so that a continued run repeats an uninterrupted one.
-template <int D> void MpcState<D>::write_restart(FILE *file, const std::vector<Pull<D>> &pulls)
+template <int D>
+void MpcState<D>::write_restart(FILE *file, const std::vector<Pull<D>> &pulls,
+                                const std::vector<double> &average)
 {
   mpc::Checksum sum;
   const double bytes = sizeof(mpc::RestartHeader) + pulls.size() * sizeof(Pull<D>) +
-      solver_.particles() * sizeof(Particle<D>) + sizeof sum.value();
+      average.size() * sizeof(double) + solver_.particles() * sizeof(Particle<D>) + sizeof sum.value();
   if (bytes > INT_MAX)
     error->all(FLERR, "fix mpc: restart: {} particles are too many for a LAMMPS restart file; "
                "use fix_modify save and load", solver_.particles());
@@ -220,12 +222,15 @@ template <int D> void MpcState<D>::write_restart(FILE *file, const std::vector<P
     const auto header = mpc::restart_header(
         D, static_cast<std::int64_t>(solver_.particles()),
         static_cast<std::int64_t>(solver_.collisions()), comm->nprocs,
-        static_cast<std::int64_t>(pulls.size()), given_.seed);
+        static_cast<std::int64_t>(pulls.size()), static_cast<std::int64_t>(average.size()),
+        given_.seed);
     const int size = static_cast<int>(bytes);
     std::fwrite(&size, sizeof size, 1, file);
     std::fwrite(&header, sizeof header, 1, file);
     std::fwrite(pulls.data(), sizeof(Pull<D>), pulls.size(), file);
     sum.add(pulls.data(), pulls.size() * sizeof(Pull<D>));
+    std::fwrite(average.data(), sizeof(double), average.size(), file);
+    sum.add(average.data(), average.size() * sizeof(double));
   }
   gather([&](const std::vector<Particle<D>> &particles) {
     std::fwrite(particles.data(), sizeof particles[0], particles.size(), file);
@@ -235,19 +240,21 @@ template <int D> void MpcState<D>::write_restart(FILE *file, const std::vector<P
   if (comm->me == 0) std::fwrite(&checksum, sizeof checksum, 1, file);
 }
 
-template <int D> std::vector<Pull<D>> MpcState<D>::restart(const char *buffer)
+template <int D>
+typename MpcState<D>::Restored MpcState<D>::restart(const char *buffer)
 {
   const auto header = mpc::read_restart_header<D>(buffer, given_.seed);
   solver_.reset(header.fluid.collisions, lower(), upper());
-  std::vector<Pull<D>> pulls;
+  Restored restored;
   mpc::read_restart<D, Pull<D>>(
       buffer, given_.seed,
       [&](const Pull<D> &pull) {
-        if (header.processes == comm->nprocs) pulls.push_back(pull);
+        if (header.processes == comm->nprocs) restored.pulls.push_back(pull);
       },
+      [&](double value) { restored.average.push_back(value); },
       [&](const Particle<D> &particle) { solver_.add(particle); });
   solver_.count();
-  return pulls;
+  return restored;
 }
 
 template class LAMMPS_NS::MpcState<2>;

@@ -30,8 +30,14 @@ template <int D> class MpcState : protected Pointers {
   void load(const std::string &file);
   void save(const std::string &file);
 
-  void write_restart(FILE *, const std::vector<Pull<D>> &of_all);
-  std::vector<Pull<D>> restart(const char *);    // of all, if they were as many processes
+  // Beside the fluid: the last pulls on colloids, and an average under way.
+  void write_restart(FILE *, const std::vector<Pull<D>> &of_all,
+                     const std::vector<double> &average);
+  struct Restored {
+    std::vector<Pull<D>> pulls;    // of all, if they were as many processes
+    std::vector<double> average;
+  };
+  Restored restart(const char *);
 
  private:
   std::array<int, D> bound(const double *corner) const;

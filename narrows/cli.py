@@ -9,6 +9,7 @@ from narrows.commands.advise import advise
 from narrows.commands.analyze import analyze
 from narrows.commands.deck import deck
 from narrows.commands.diffusivity import diffusivity
+from narrows.commands.export import export
 from narrows.commands.lattice import app as lattice_app
 from narrows.commands.reproduce import reproduce
 from narrows.commands.run import run
@@ -22,7 +23,7 @@ app = typer.Typer(
     pretty_exceptions_enable=False,
     help="Particles driven through narrow spaces: scenes, LAMMPS decks, runs and their analysis.",
 )
-for command in (advise, deck, run, sweep, status, analyze, diffusivity, reproduce, units):
+for command in (advise, deck, run, sweep, status, analyze, export, diffusivity, reproduce, units):
     app.command()(command)
 app.add_typer(lattice_app, name="lattice")
 

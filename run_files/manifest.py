@@ -133,11 +133,19 @@ class Reactions(Part):
     cutoff: Annotated[float, Field(ge=0)]
 
 
+class FlowField(Part):
+    """The grid of the flow of the fluid, and what it is about; 0: the laboratory."""
+
+    bins: tuple[Count, ...] = Field(min_length=2, max_length=3)
+    samples: Count
+    around: Whole = 0
+
+
 class Output(Part):
     """A file of the run, and its columns beside the step."""
 
     file: FileName
-    kind: Literal["trajectory", "table", "profile"]
+    kind: Literal["trajectory", "table", "profile", "flow"]
     columns: tuple[str, ...]
 
 
@@ -154,6 +162,7 @@ class System(Part):
     rest: Rest | None = None
     solvent: Solvent | None
     reactions: Reactions | None = None
+    flow: FlowField | None = None
     outputs: tuple[Output, ...]
     measures: tuple[Word, ...]
 
@@ -172,6 +181,10 @@ class System(Part):
         for wall in self.walls:
             if wall.axis >= self.box.dimensions or self.box.periodic[wall.axis]:
                 raise ValueError(f"a wall across axis {wall.axis}, which is periodic or none")
+        if self.flow and len(self.flow.bins) != self.box.dimensions:
+            raise ValueError(
+                f"flow: bins along {len(self.flow.bins)} axes of {self.box.dimensions}"
+            )
         reacting = self.reactions.axis if self.reactions else None
         if reacting is not None and reacting not in [wall.axis for wall in self.walls]:
             raise ValueError(f"reactions at walls of axis {reacting}: it has none")

@@ -29,6 +29,7 @@ class Engine(ABC):
         reactions: whether it lets colours react.
         rests: whether it can let a system rest before the run.
         couplings: of species to a solvent that it knows.
+        tells_flow: whether it tells the flow of the fluid on a grid.
     """
 
     name: ClassVar[str]
@@ -40,6 +41,7 @@ class Engine(ABC):
     reactions: ClassVar[bool] = False
     rests: ClassVar[bool] = False
     couplings: ClassVar[tuple[Coupling, ...]] = ("force",)
+    tells_flow: ClassVar[bool] = False
 
     @abstractmethod
     def problems(self, system: System) -> Iterator[str]:
@@ -73,6 +75,8 @@ class Engine(ABC):
             yield f"{system.reactions!r}: engine {self.name} has no such"
         if system.rest and not self.rests:
             yield f"{system.rest!r}: engine {self.name} has no rest before the run"
+        if system.flow and not self.tells_flow:
+            yield f"{system.flow!r}: engine {self.name} tells no flow field"
         if system.solvent and system.solvent.coupling not in self.couplings:
             known = " or ".join(self.couplings)
             yield f"coupling = {system.solvent.coupling!r}: engine {self.name} has {known} only"

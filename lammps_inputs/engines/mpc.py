@@ -16,6 +16,7 @@ from lammps_inputs.potentials.harmonic_wall import HarmonicWall
 from lammps_inputs.potentials.integrated_wall import IntegratedWall
 from lammps_inputs.potentials.repulsive_mie import RepulsiveMie
 from lammps_inputs.system import (
+    FLOW,
     FLUID,
     FLUID_AVERAGES,
     SUSPENSION_AVERAGES,
@@ -39,6 +40,7 @@ class Mpc(LammpsEngine):
     wall_potentials = (IntegratedWall, HarmonicWall)
     motions = (VelocityVerlet,)
     couplings = ("force", "reflection", "cell")
+    tells_flow = True
 
     def problems(self, system: System) -> Iterator[str]:
         yield from self.needs_solvent(system)
@@ -125,6 +127,10 @@ class Mpc(LammpsEngine):
         mode = "append" if start.checkpoint else "file"
         options.append(f"bins {profile_bins(system)}")
         options.append(f"profile {clock.look_steps} ${{sample}} {mode} fluid_profile.dat")
+        if system.flow:
+            grid = " ".join(map(str, system.flow.bins))
+            every = f"{clock.look_steps} $(v_sample*{system.flow.samples})"
+            options.append(f"flow {every} {grid} {system.flow.around or 'lab'} {mode} {FLOW.file}")
         coupled = _group(system) if system.coupled else "NULL"
         yield "# the MPC solvent"
         yield (

@@ -35,10 +35,11 @@ class Checksum {
   std::uint64_t value_ = 0xcbf29ce484222325;
 };
 
-// What a restart begins with, before the pulls on the colloids, the particles and their checksum.
+// What a restart begins with, before the pulls on the colloids, the average of the flow under way,
+// the particles and their checksum.
 struct RestartHeader {
   FluidHeader fluid;
-  std::int64_t processes, pulls;
+  std::int64_t processes, pulls, averages;
   std::uint64_t seed, checksum;    // the latter of what stands before it
 
   std::uint64_t expected() const
@@ -50,9 +51,10 @@ struct RestartHeader {
 };
 
 inline RestartHeader restart_header(int dimension, std::int64_t particles, std::int64_t collisions,
-                                    std::int64_t processes, std::int64_t pulls, std::uint64_t seed)
+                                    std::int64_t processes, std::int64_t pulls,
+                                    std::int64_t averages, std::uint64_t seed)
 {
-  RestartHeader header{{{}, dimension, particles, collisions}, processes, pulls, seed, 0};
+  RestartHeader header{{{}, dimension, particles, collisions}, processes, pulls, averages, seed, 0};
   std::memcpy(header.fluid.magic, RESTART, sizeof RESTART);
   header.checksum = header.expected();
   return header;
@@ -73,15 +75,17 @@ template <int D> RestartHeader read_restart_header(const char *buffer, std::uint
   return header;
 }
 
-// Visit the pulls, then the particles of a restart, once all are known to be what was written.
-template <int D, class Pull, class OnPull, class OnParticle>
+// Visit the pulls, the numbers of an average, then the particles of a restart, once all are known to
+// be what was written.
+template <int D, class Pull, class OnPull, class OnAverage, class OnParticle>
 RestartHeader read_restart(const char *buffer, std::uint64_t seed, const OnPull &on_pull,
-                           const OnParticle &on_particle)
+                           const OnAverage &on_average, const OnParticle &on_particle)
 {
   const auto header = read_restart_header<D>(buffer, seed);
   const char *next = buffer + sizeof header;
   const std::size_t bytes =
-      header.pulls * sizeof(Pull) + header.fluid.particles * sizeof(Particle<D>);
+      header.pulls * sizeof(Pull) + header.averages * sizeof(double) +
+      header.fluid.particles * sizeof(Particle<D>);
   Checksum sum;
   sum.add(next, bytes);
   std::uint64_t checksum;
@@ -91,6 +95,11 @@ RestartHeader read_restart(const char *buffer, std::uint64_t seed, const OnPull 
     Pull pull;
     std::memcpy(&pull, next, sizeof pull);
     on_pull(pull);
+  }
+  for (std::int64_t n = 0; n < header.averages; ++n, next += sizeof(double)) {
+    double average;
+    std::memcpy(&average, next, sizeof average);
+    on_average(average);
   }
   for (std::int64_t n = 0; n < header.fluid.particles; ++n, next += sizeof(Particle<D>)) {
     Particle<D> particle;

@@ -49,11 +49,12 @@ Bytes fluid_file(const std::vector<Particle<D>> &particles)
   return bytes;
 }
 
-Bytes restart(const std::vector<Particle<D>> &particles, int pulls)
+Bytes restart(const std::vector<Particle<D>> &particles, int pulls, int averages)
 {
   Bytes bytes, records;
-  append(bytes, restart_header(D, particles.size(), 3, 1, pulls, SEED));
+  append(bytes, restart_header(D, particles.size(), 3, 1, pulls, averages, SEED));
   for (int n = 0; n < pulls; ++n) append(records, Pull{0, 1.0 * n, {1, 2}, {3, 4}});
+  for (int n = 0; n < averages; ++n) append(records, 1.5 * n);
   for (const auto &particle : particles) append(records, particle);
   Checksum sum;
   sum.add(records.data(), records.size());
@@ -117,7 +118,7 @@ bool read(const Bytes &bytes, std::vector<Particle<D>> &particles)
   try {
     const auto memory = exactly(bytes);
     read_restart<D, Pull>(
-        memory.get(), SEED, [](const Pull &) {},
+        memory.get(), SEED, [](const Pull &) {}, [](double) {},
         [&](const Particle<D> &particle) { particles.push_back(particle); });
     return false;
   } catch (const Fault &) {
@@ -138,7 +139,7 @@ int main(int, char **argv)
     auto damaged = file;
     damage(damaged, chance, false);
     refused += load(damaged);
-    const auto whole = restart(particles, chance() % 4);
+    const auto whole = restart(particles, chance() % 4, 3);
     auto other = whole;
     damage(other, chance, true);    // LAMMPS reads as many bytes as it wrote
     std::vector<Particle<D>> found;
