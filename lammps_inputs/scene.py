@@ -5,6 +5,7 @@ mass m_f are 1, so times are in t0 = a0 sqrt(m_f / kBT) and velocities in a0 / t
 (tabatabaei-2009, 3.2.3 and 3.4.1).
 """
 
+import inspect
 import reprlib
 import tomllib
 from abc import ABC, abstractmethod
@@ -17,6 +18,7 @@ import tomli_w
 from pydantic import BaseModel, ConfigDict, Field, ValidationError
 
 from lammps_inputs.comparison import Laboratory
+from lammps_inputs.field_table import field_rows
 from lammps_inputs.system import System
 
 Positive = Annotated[float, Field(gt=0)]
@@ -90,6 +92,15 @@ class Scene(BaseModel, ABC):
     seed: Annotated[int, Field(ge=1, lt=2**31)] = Field(
         default=1, description="seed of every random stream"
     )
+
+    @classmethod
+    def __pydantic_init_subclass__(cls, **kwargs: Any) -> None:
+        """`help()` of a scene lists its fields."""
+        fields = [
+            f"    {row.name} = {row.default}{f' [{row.unit}]' if row.unit else ''}: {row.meaning}"
+            for row in field_rows(cls)
+        ]
+        cls.__doc__ = "\n".join([inspect.cleandoc(cls.__doc__ or ""), "", "Fields:", *fields])
 
     @classmethod
     def make(cls, /, **fields: Any) -> Self:

@@ -1,6 +1,7 @@
-"""Progress bars on a terminal; silence elsewhere."""
+"""Progress bars on a terminal; elsewhere a line now and then of many runs, none of a single one."""
 
 import sys
+import time as clock
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 
@@ -12,6 +13,7 @@ from srd_driver.sweep import Advance
 
 PACE_SECONDS = 300.0  # the time remaining is told from the pace of the last five minutes
 BAR = 100_000  # steps of the bar
+LINE_SECONDS = 30.0  # between two lines, and before the first
 
 ReportRuns = Callable[[Advance], None]
 ReportAnalysis = Callable[[int, int], None]
@@ -47,11 +49,60 @@ def finish_with_progress(simulation: Simulation) -> None:
         simulation.finish(report)
 
 
+class Lines:
+    """Progress for a pipe or the log of a queue: a line every half a minute.
+
+    Args:
+        say: prints a line.
+        now: seconds of a clock.
+    """
+
+    def __init__(
+        self,
+        say: Callable[[str], None] = lambda line: print(line, file=sys.stderr, flush=True),
+        now: Callable[[], float] = clock.monotonic,
+    ) -> None:
+        self._say = say
+        self._now = now
+        self._began = self._said = now()
+        self._work: float | None = None  # done before
+
+    def report_runs(self, now: Advance) -> None:
+        """What `run_all` calls."""
+        if self._work is None:
+            self._work = now.work
+        if not self._is_time():
+            return
+        done = now.work - self._work
+        left = ""
+        if done > 0:
+            minutes = (self._now() - self._began) * (1 - now.work) / done / 60
+            left = f", about {minutes:.0f} min left" if minutes >= 1 else ", less than 1 min left"
+        self._say(f"{100 * now.work:.1f} %: {_counts(now)}{left}")
+
+    def report_analysis(self, done: int, total: int) -> None:
+        """What `tabulate` calls."""
+        if self._is_time():
+            self._say(f"{done} of {total} runs analysed")
+
+    def _is_time(self) -> bool:
+        if self._now() - self._said < LINE_SECONDS:
+            return False
+        self._said = self._now()
+        return True
+
+
+def _counts(now: Advance) -> str:
+    failed = f", {now.failed} failed" if now.failed else ""
+    return f"{now.finished} of {now.runs} runs finished, {now.running} running{failed}"
+
+
 @contextmanager
-def progress_of_runs() -> Iterator[tuple[ReportRuns | None, ReportAnalysis | None]]:
-    """One bar for all runs, then one for their analysis."""
+def progress_of_runs() -> Iterator[tuple[ReportRuns, ReportAnalysis]]:
+    """One bar for all runs, then one for their analysis; without a terminal, lines on stderr."""
     if not sys.stderr.isatty():
-        yield None, None
+        lines = Lines()
+        yield lines.report_runs, lines.report_analysis
         return
     with Progress(
         BarColumn(),
@@ -68,9 +119,7 @@ def progress_of_runs() -> Iterator[tuple[ReportRuns | None, ReportAnalysis | Non
             progress.update(tasks[name], completed=completed, description=text)
 
         def report_runs(now: Advance) -> None:
-            failed = f", {now.failed} failed" if now.failed else ""
-            text = f"{now.finished} of {now.runs} runs finished, {now.running} running{failed}"
-            show("runs", round(now.work * BAR), BAR, text)
+            show("runs", round(now.work * BAR), BAR, _counts(now))
 
         def report_analysis(done: int, total: int) -> None:
             show("analysis", done, total, f"{done} of {total} runs analysed")

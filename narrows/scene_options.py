@@ -7,15 +7,38 @@ import typer
 
 from lammps_inputs import Scene, SceneError, all_engines, all_scenes, make_scene, parse_assignment
 from lammps_inputs.engines.engine import LammpsEngine
+from lammps_inputs.field_table import field_rows
 from lammps_inputs.scene import read_scene
 
-SceneName = Annotated[str, typer.Argument(metavar="SCENE", help=" or ".join(all_scenes()))]
+
+def complete_scene(incomplete: str) -> list[str]:
+    """Scenes for the shell to choose from."""
+    return [name for name in all_scenes() if name.startswith(incomplete)]
+
+
+def complete_field(context: typer.Context, incomplete: str) -> list[tuple[str, str]]:
+    """`FIELD=` of the scene that the command line names, with meanings."""
+    known = all_scenes()
+    words = [context.params.get("scene"), *context.args]  # it is not always parsed by then
+    rows = next((field_rows(known[word]) for word in words if word in known), [])
+    return [(f"{row.name}=", row.meaning) for row in rows if row.name.startswith(incomplete)]
+
+
+SceneName = Annotated[
+    str,
+    typer.Argument(metavar="SCENE", autocompletion=complete_scene, help=" or ".join(all_scenes())),
+]
 SceneFile = Annotated[
     Path | None, typer.Option("--scene", metavar="FILE.toml", help="fields of the scene")
 ]
 Settings = Annotated[
     list[str] | None,
-    typer.Option("--set", metavar="FIELD=VALUE", help="one field; wins over the file"),
+    typer.Option(
+        "--set",
+        metavar="FIELD=VALUE",
+        autocompletion=complete_field,
+        help="one field, in its unit; wins over the file; narrows scenes SCENE lists them",
+    ),
 ]
 Until = Annotated[
     list[str] | None,

@@ -19,9 +19,11 @@ def diffusivity(
     axis: Annotated[str, typer.Option(metavar="x|y|z", help="across the slit")] = "z",
     select: Annotated[str, typer.Option(help="atoms, in MDAnalysis's words")] = "all",
     dt: Annotated[
-        float | None, typer.Option(help="time between frames, if the file does not tell it")
+        float | None, typer.Option(help="time between frames [time of the file], if it has none")
     ] = None,
-    low: Annotated[float | None, typer.Option(help="lower surface; default: near the end")] = None,
+    low: Annotated[
+        float | None, typer.Option(help="lower surface [length of the file]; default: near the end")
+    ] = None,
     high: Annotated[float | None, typer.Option(help="upper surface; likewise")] = None,
     estimators: Annotated[
         str, typer.Option("--by", metavar="LIST", help="of color, bayes, first-passage")

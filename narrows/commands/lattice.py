@@ -88,10 +88,11 @@ def check(
     file: File,
     sites: Annotated[int, typer.Option(metavar="L", min=2, help="sites of the full generator")] = 7,
     start: Annotated[
-        int | None, typer.Option("--from", metavar="K", help="initial shock position")
+        int | None, typer.Option("--from", metavar="K", help="initial shock position [sites]")
     ] = None,
     times: Annotated[
-        str | None, typer.Option(metavar="T1,T2", help="times for the mean shock position")
+        str | None,
+        typer.Option(metavar="T1,T2", help="times for the mean shock position [inverse rates]"),
     ] = None,
     out: Json = None,
 ) -> None:
@@ -125,14 +126,15 @@ def simulate(
     replicas: Annotated[int, typer.Option(min=2, max=MOST, help="independent runs")] = 20,
     time: Annotated[
         float,
-        typer.Option(min=0, max=LONGEST, help="length of each run, in inverse units of the rates"),
+        typer.Option(min=0, max=LONGEST, help="length of each run [inverse rates]"),
     ] = 200.0,
     samples: Annotated[
         int, typer.Option(min=3, max=MOST, help="equally spaced samples, first at time 0")
     ] = 41,
     seed: Annotated[int, typer.Option(min=0, help="equal seeds give equal results")] = 1,
     start: Annotated[
-        int | None, typer.Option("--from", metavar="K", help="initial shock position (default L/2)")
+        int | None,
+        typer.Option("--from", metavar="K", help="initial shock position [sites], default L/2"),
     ] = None,
     out: Json = None,
     figures: Figures = None,

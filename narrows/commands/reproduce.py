@@ -13,8 +13,15 @@ from srd_driver.signals import interrupted_by_signals
 from srd_driver.sweep import available_cores
 
 
+def _complete_paper(incomplete: str) -> list[str]:
+    return [name for name in papers() if name.startswith(incomplete)]
+
+
 def reproduce(
-    paper: Annotated[str, typer.Argument(metavar="PAPER", help=" or ".join(papers()))],
+    paper: Annotated[
+        str,
+        typer.Argument(metavar="PAPER", autocompletion=_complete_paper, help=" or ".join(papers())),
+    ],
     out: Annotated[Path, typer.Option("--out", metavar="DIR", help="folder of runs and results")],
     figures: Annotated[
         list[str] | None, typer.Argument(metavar="[FIGURE]...", help="as 4.6; default: all")
@@ -25,9 +32,11 @@ def reproduce(
 ) -> None:
     """Compute the figures of a paper again and hold them against its numbers.
 
-    Writes figures, data, results.json and index.html into DIR. Run again it goes on where it was.
+    Writes figures, data, results.json and index.html into DIR. Run again it goes on where it was;
+    `narrows status DIR` tells how far it is.
     """
     from narrows.papers.page import count_verdicts
+    from narrows.papers.reproduction_file import remember
     from narrows.papers.session import Plan, carry_out, select
 
     try:
@@ -38,6 +47,7 @@ def reproduce(
     with user_errors():
         began = clock.perf_counter()
         plan = Plan(asked, chosen, "quick" if quick else "full", out)
+        remember(plan)
         jobs = available_cores()
         missing = len(plan.runs) - plan.finished()
         say(

@@ -1,23 +1,38 @@
 """`narrows status`: how far runs are."""
 
+from collections.abc import Iterable, Sequence
 from pathlib import Path
-from typing import Annotated
+from typing import TYPE_CHECKING, Annotated
 
 import typer
 
 from narrows.messages import say, user_errors
+from narrows.papers import is_reproduction
 from run_files import RunDirectoryError
 from run_files.sweep_file import is_sweep
 from srd_driver import RunError, sweep_definition
 from srd_driver.status import Status, status_of, stored_run
 from srd_driver.sweep import Run
 
+if TYPE_CHECKING:
+    from narrows.papers.session import Plan
+
+BY_URGENCY = ("failed", "running", "by hand", "stopped", "waiting", "finished")  # states
+
 
 def status(
-    directory: Annotated[Path, typer.Argument(metavar="DIR", help="of a sweep or a run")],
+    directory: Annotated[
+        Path, typer.Argument(metavar="DIR", help="of a run, a sweep or a reproduced paper")
+    ],
 ) -> None:
     """Whether each run is finished, running, failed, stopped or waiting; how far, and how fast."""
     with user_errors():
+        if is_reproduction(directory):
+            from narrows.papers.reproduction_file import read_plans  # loads what makes figures
+
+            for plan in read_plans(directory):
+                _tell_reproduction(plan)
+            return
         if is_sweep(directory):
             runs = sweep_definition.read(directory).runs
         else:
@@ -27,9 +42,28 @@ def status(
         for name, entry in found.items():
             say(f"{name:<{width}}  {_line(entry)}")
         if len(runs) > 1:
-            states = [entry.state for entry in found.values()]
-            counts = {state: states.count(state) for state in dict.fromkeys(states)}
-            say(f"{len(runs)} runs: " + ", ".join(f"{n} {state}" for state, n in counts.items()))
+            say(f"{len(runs)} runs: {_counts(found.values())}")
+
+
+def _tell_reproduction(plan: "Plan") -> None:
+    """A line for each figure, one for each run that is under way or in trouble, and a sum."""
+    say(f"{plan.paper.name}, {plan.quality} quality")
+    found = {run.scene: _status_or_damage(run) for run in plan.runs}
+    width = max(len(figure.number) for figure in plan.figures)
+    for figure in plan.figures:
+        entries = [found[scene] for scene in dict.fromkeys(figure.scenes(plan.quality))]
+        say(f"  {figure.number:<{width}}  {_counts(entries) or 'needs no runs'}")
+    for run in plan.runs:
+        entry = found[run.scene]
+        if entry.state in ("failed", "running", "stopped"):
+            say(f"  {run.folder.name}  {_line(entry)}")
+    say(f"  {len(plan.runs)} runs: {_counts(found.values()) or 'none needed'}")
+
+
+def _counts(entries: Iterable[Status]) -> str:
+    """`2 running, 3 waiting`."""
+    states: Sequence[str] = [entry.state for entry in entries]
+    return ", ".join(f"{states.count(each)} {each}" for each in BY_URGENCY if each in states)
 
 
 def _status_or_damage(run: Run) -> Status:

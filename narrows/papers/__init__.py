@@ -6,6 +6,7 @@
 | `figure` | what a figure of a paper is: scenes, and what is made of their runs |
 | `session` | runs what is missing, makes the figures, writes the files |
 | `page` | `index.html` |
+| `reproduction_file` | what was asked for in a directory |
 | `drawing` | the look of the figures |
 | `tabatabaei_2009` | the thesis on colloids in a narrow channel |
 | `hecht_2005` | claylike colloids |
@@ -13,10 +14,13 @@
 
 import importlib
 import pkgutil
+from pathlib import Path
 from typing import TYPE_CHECKING
 
 if TYPE_CHECKING:  # the command line lists papers without loading what makes their figures
     from narrows.papers.figure import Paper
+
+REPRODUCTION = "reproduction.json"  # what was asked for in a directory
 
 
 def papers() -> list[str]:
@@ -26,6 +30,11 @@ def papers() -> list[str]:
         for package in pkgutil.iter_modules(__path__)
         if package.ispkg
     ]
+
+
+def is_reproduction(directory: Path) -> bool:
+    """Whether figures of a paper were asked for in the directory."""
+    return (directory / REPRODUCTION).is_file()
 
 
 def paper_named(name: str) -> "Paper":

@@ -132,7 +132,7 @@ def test_a_killed_run_is_named_and_the_next_time_goes_on(tmp_path: Path, command
     stdout, stderr = sweep.communicate(timeout=300)
     assert sweep.returncode == 1
     assert stdout.startswith(f"{out}: 1 of 2 runs finished; 1 points in ")
-    assert stderr == f"narrows: seed=1: killed by SIGKILL (its output: {killed}.log)\n"
+    assert stderr.endswith(f"narrows: seed=1: killed by SIGKILL (its output: {killed}.log)\n")
     told = command("narrows", "status", out).stdout.splitlines()
     assert told[0].split()[1] == "failed"
     assert told[0].endswith("killed by SIGKILL")
@@ -160,7 +160,7 @@ def test_an_interrupt_leaves_checkpoints(
     sweep.send_signal(number)
     _, stderr = sweep.communicate(timeout=300)
     assert sweep.returncode == 130
-    assert stderr == (
+    assert stderr.endswith(  # lines of progress may be before it
         "narrows: interrupted: 0 of 3 runs are finished; give the same command again to go on\n"
     )
     for child in children:

@@ -1,9 +1,14 @@
+import re
 from pathlib import Path
 
 import pytest
 from typer.testing import CliRunner
 
 from narrows.cli import app
+from narrows.papers import paper_named
+from narrows.papers.reproduction_file import remember
+from narrows.papers.session import Plan, select
+from srd_driver import Simulation
 
 
 @pytest.mark.parametrize(
@@ -33,3 +38,28 @@ def test_a_figure_of_the_lattice_gas(tmp_path: Path) -> None:
     assert {path.name for path in out.iterdir()} >= {
         *("figure-2.2.png", "figure-2.2.pdf", "figure-2.2.csv", "results.json", "index.html")
     }
+
+
+def test_status_tells_of_each_figure_and_run(tmp_path: Path) -> None:
+    """Asked for and interrupted, as after a kill: nothing finished, one run half way."""
+    out = tmp_path / "out"
+    paper = paper_named("tabatabaei-2009")
+    plan = Plan(paper, select(paper, ["2.2", "4.4"]), "quick", out)
+    remember(plan)
+    remember(Plan(paper, select(paper, ["4.4", "4.5"]), "quick", out))
+    half = plan.runs[0]
+    with Simulation(half.scene, half.engine, half.folder) as simulation:
+        simulation.run(0.75)
+        simulation.checkpoint()
+    told = CliRunner().invoke(app, ["status", str(out)]).stdout.splitlines()
+    assert told[0] == "tabatabaei-2009, quick quality"
+    assert told[1] == "  2.2  needs no runs"
+    assert told[2] == f"  4.4  1 stopped, {len(plan.runs) - 1} waiting"
+    assert told[3].startswith("  4.5  ")
+    assert told[4].startswith(f"  {half.folder.name}  stopped")
+    assert re.fullmatch(r"  \d+ runs: 1 stopped, \d+ waiting", told[-1])
+    file = out / "reproduction.json"
+    file.write_text(file.read_text().replace("4.5", "9.9"))
+    done = CliRunner().invoke(app, ["status", str(out)])
+    assert done.exit_code == 2
+    assert done.stderr.startswith(f"narrows: {file}: damaged, or changed by hand")
