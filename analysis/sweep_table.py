@@ -3,14 +3,19 @@
 import csv
 import io
 import json
+import math
 import signal
+import sys
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from concurrent.futures import Future, ProcessPoolExecutor, as_completed
 from contextlib import contextmanager
 from dataclasses import dataclass
 from multiprocessing import get_context
 from pathlib import Path
-from typing import Any
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+from numpy.typing import NDArray
 
 from analysis.analyze import SUMMARY, analyze, estimates, is_analysed
 from analysis.estimate import Estimate, mean_of_repeats
@@ -19,6 +24,9 @@ from run_files.progress import is_begun, read_progress
 from run_files.reading import read_json
 from run_files.sweep_file import SweptRun, read_sweep
 from run_files.writing import replace_text
+
+if TYPE_CHECKING:
+    import pandas  # which nobody needs: its own people have it
 
 Row = dict[str, Any]
 
@@ -60,6 +68,13 @@ class SweepTable:
         finished: runs in it.
         runs: runs of the sweep.
         problems: one line for each finished run that could not be analysed.
+        fields: columns that tell points apart, the swept fields first.
+        quantities: columns with a number of the analysis; `NAME_error` is its error.
+
+    >>> point = Point({"gravity": 0.1}, ["seed=1"], {"speed": Estimate(0.03, 0.001)})
+    >>> table = SweepTable([point], [point.row(["speed"])], finished=1, runs=1, problems=[])
+    >>> table["speed"]
+    array([0.03])
     """
 
     points: list[Point]
@@ -67,6 +82,31 @@ class SweepTable:
     finished: int
     runs: int
     problems: list[str]
+    fields: tuple[str, ...] = ()
+    quantities: tuple[str, ...] = ()
+
+    def __getitem__(self, column: str) -> NDArray[Any]:
+        """A column, (points,): numbers, NaN where the runs tell none; else objects.
+
+        Raises:
+            KeyError: for an unknown column, naming those there are.
+        """
+        if self.rows and column not in self.rows[0]:
+            raise KeyError(f"{column}: there is {', '.join(self.rows[0])}")
+        values = [row[column] for row in self.rows]
+        if all(value is None or isinstance(value, int | float) for value in values):
+            return np.array([math.nan if value is None else value for value in values])
+        return np.array(values, dtype=object)
+
+    def dataframe(self) -> "pandas.DataFrame":
+        """The table as a pandas DataFrame, where pandas is installed.
+
+        Raises:
+            ImportError: where it is not.
+        """
+        import pandas
+
+        return pandas.DataFrame(self.rows)
 
 
 def tabulate(
@@ -106,10 +146,18 @@ def tabulate(
     }
     columns = _columns(sweep.over, [run.fields for run in runs.values()])
     points = _points(columns, {name: runs[name].fields for name in summaries}, summaries)
-    quantities = list(dict.fromkeys(name for found in summaries.values() for name in found))
+    quantities = tuple(dict.fromkeys(name for found in summaries.values() for name in found))
     rows = [point.row(quantities) for point in points]
     _write(directory / "table.csv", rows)
-    return SweepTable(points, rows, len(summaries), len(runs), list(problems.values()))
+    return SweepTable(
+        points,
+        rows,
+        len(summaries),
+        len(runs),
+        list(problems.values()),
+        tuple(columns),
+        quantities,
+    )
 
 
 def _read_estimates(path: Path) -> dict[str, Estimate]:
@@ -126,25 +174,54 @@ def _analyse(
 ) -> dict[Path, str]:
     """Write the summaries; what went wrong, by path."""
     problems: dict[Path, str] = {}
-    if not paths:
-        return problems
+    for done, (path, error) in enumerate(_analysed(paths, min(jobs, len(paths))), start=1):
+        if isinstance(error, RunDirectoryError | OSError):
+            problems[path] = str(error)
+        elif error is not None:
+            raise error
+        if report:
+            report(done, len(paths))
+    return problems
+
+
+def _analysed(paths: Sequence[Path], jobs: int) -> Iterator[tuple[Path, BaseException | None]]:
+    """Each path once its run is analysed, and the error of that."""
+    if jobs <= 1:
+        for path in paths:
+            yield path, _error_of(path)
+        return
     # spawned, because MPI may be initialised here
-    with ProcessPoolExecutor(min(jobs, len(paths)), get_context("spawn")) as pool:
-        with _ctrl_c_held():
+    with ProcessPoolExecutor(jobs, get_context("spawn")) as pool:
+        with _ctrl_c_held(), _main_program_hidden():
             tasks: dict[Future[Any], Path] = {pool.submit(analyze, path): path for path in paths}
         try:
-            for done, task in enumerate(as_completed(tasks), start=1):
-                error = task.exception()
-                if isinstance(error, RunDirectoryError | OSError):
-                    problems[tasks[task]] = str(error)
-                elif error is not None:
-                    raise error
-                if report:
-                    report(done, len(paths))
+            for task in as_completed(tasks):
+                yield tasks[task], task.exception()
         except BaseException:
             pool.shutdown(wait=False, cancel_futures=True)
             raise
-    return problems
+
+
+def _error_of(path: Path) -> Exception | None:
+    try:
+        analyze(path)
+    except Exception as error:
+        return error
+    return None
+
+
+@contextmanager
+def _main_program_hidden() -> Iterator[None]:
+    """Processes started in here do not run the user's script again to find its functions."""
+    main = sys.modules["__main__"]
+    hidden: dict[str, Any] = {"__spec__": main.__spec__}
+    if hasattr(main, "__file__"):
+        hidden["__file__"] = vars(main).pop("__file__")
+    main.__spec__ = None
+    try:
+        yield
+    finally:
+        vars(main).update(hidden)
 
 
 @contextmanager

@@ -80,6 +80,7 @@ class Scene(BaseModel, ABC):
     model_config = ConfigDict(frozen=True, extra="forbid", allow_inf_nan=False, strict=False)
 
     name: ClassVar[str]
+    paper: ClassVar[str] = ""  # that the scene is of, as `narrows reproduce` names it
     si_fields: ClassVar[tuple[str, ...]] = ()  # which have bounds of their own
 
     duration: Positive = Field(description="simulated time after the equilibration [t0]")

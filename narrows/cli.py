@@ -14,6 +14,7 @@ from narrows.commands.deck import deck
 from narrows.commands.diffusivity import diffusivity
 from narrows.commands.export import export
 from narrows.commands.lattice import app as lattice_app
+from narrows.commands.report import report
 from narrows.commands.reproduce import reproduce
 from narrows.commands.run import run
 from narrows.commands.scenes import scenes
@@ -26,7 +27,21 @@ app = typer.Typer(
     pretty_exceptions_enable=False,
     help="Particles driven through narrow spaces: scenes, LAMMPS decks, runs and their analysis.",
 )
-for command in (scenes, advise, deck, run, sweep, status, analyze, export, diffusivity, reproduce, units):
+COMMANDS = (
+    scenes,
+    advise,
+    deck,
+    run,
+    sweep,
+    status,
+    analyze,
+    report,
+    export,
+    diffusivity,
+    reproduce,
+    units,
+)
+for command in COMMANDS:
     app.command()(command)
 app.add_typer(lattice_app, name="lattice")
 

@@ -22,6 +22,7 @@ class BulkSpheres(HardSphereScene):
     """
 
     name: ClassVar[str] = "bulk_spheres"
+    paper: ClassVar[str] = "carmer-2012"
 
     centers: int = Field(default=20, ge=1, le=1000, description="central spheres")
     cutoff: Positive = Field(default=5.0, description="radius of the outer surface R_cut [a0]")

@@ -39,6 +39,7 @@ class Channel(FluidScene):
     """
 
     name: ClassVar[str] = "channel"
+    paper: ClassVar[str] = "tabatabaei-2009"
 
     length: Positive = Field(default=40.0, description="channel length along x [a0]")
     width: Positive = Field(default=10.0, description="distance between the walls [a0]")

@@ -67,6 +67,7 @@ class Claylike(Scene):
     """
 
     name: ClassVar[str] = "claylike"
+    paper: ClassVar[str] = "hecht-2005"
     si_fields: ClassVar[tuple[str, ...]] = (
         *("radius", "cell_edge", "kappa", "hamaker", "temperature", "viscosity"),
     )

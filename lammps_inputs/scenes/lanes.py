@@ -40,6 +40,7 @@ class Lanes(SoftScene):
     """
 
     name: ClassVar[str] = "lanes"
+    paper: ClassVar[str] = "delhommelle-2005"
 
     field: Annotated[float, Field(ge=0, le=1000)] = Field(
         default=1.0, description="force on each particle, along x or against it [epsilon/sigma]"

@@ -20,6 +20,7 @@ class Poiseuille(FluidScene):
     """A 2D slit of pure fluid, periodic along x, gravity on the fluid; defaults of Fig. 3.6."""
 
     name: ClassVar[str] = "poiseuille"
+    paper: ClassVar[str] = "tabatabaei-2009"
 
     length: Positive = Field(default=25.0, description="channel length along x [a0]")
     width: Positive = Field(default=25.0, description="distance between the walls [a0]")

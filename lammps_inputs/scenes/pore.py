@@ -24,6 +24,7 @@ class Pore(HardSphereScene):
     """
 
     name: ClassVar[str] = "pore"
+    paper: ClassVar[str] = "carmer-2012"
 
     width: Positive = Field(default=5.0, description="of the pore H [a0]")
     width_means: Literal["walls", "centres"] = Field(

@@ -29,6 +29,7 @@ class Shear(SoftScene):
     """
 
     name: ClassVar[str] = "shear"
+    paper: ClassVar[str] = "delhommelle-2005"
 
     dimension: Literal[2, 3] = Field(
         default=3, description="2: soft disks, (sigma/r)^12; 3: Weeks-Chandler-Andersen spheres"
