@@ -424,7 +424,7 @@ class RunDirectory:
         return np.asarray(used)
 
     def universe(self, name: str = "trajectory") -> MDAnalysis.Universe:
-        """The particles as an MDAnalysis Universe: wrapped positions, masses, time from the step.
+        """The particles as an MDAnalysis Universe: wrapped positions, masses, radii, right times.
 
         `ts.data` holds the step and the image counts `ix iy iz`. `totaltime` is wrong, because
         MDAnalysis takes frames for consecutive steps; `ts.time` is right.
@@ -461,6 +461,7 @@ class RunDirectory:
             if abs(edge - size) > BOX_PRECISION * size:
                 refuse(path, f"a box edge of {edge:g}; the manifest says {size:g}")
         universe.atoms.masses = self._each_particle("mass")
+        universe.add_TopologyAttr("radii", self._each_particle("radius"))
         return universe
 
     def _each_particle(self, attribute: str) -> list[Any]:

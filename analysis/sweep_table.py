@@ -192,7 +192,7 @@ def _analysed(paths: Sequence[Path], jobs: int) -> Iterator[tuple[Path, BaseExce
         return
     # spawned, because MPI may be initialised here
     with ProcessPoolExecutor(jobs, get_context("spawn")) as pool:
-        with _ctrl_c_held(), _main_program_hidden():
+        with _ctrl_c_held(), main_program_hidden():
             tasks: dict[Future[Any], Path] = {pool.submit(analyze, path): path for path in paths}
         try:
             for task in as_completed(tasks):
@@ -211,7 +211,7 @@ def _error_of(path: Path) -> Exception | None:
 
 
 @contextmanager
-def _main_program_hidden() -> Iterator[None]:
+def main_program_hidden() -> Iterator[None]:
     """Processes started in here do not run the user's script again to find its functions."""
     main = sys.modules["__main__"]
     hidden: dict[str, Any] = {"__spec__": main.__spec__}

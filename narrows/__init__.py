@@ -1,0 +1,80 @@
+"""Particles driven through narrow spaces, from a script or a notebook (docs/python.md).
+
+    from narrows import Simulation, make_scene
+
+    with Simulation(make_scene("channel", colloids=5, length=60), directory="runs/five") as run:
+        run.finish(progress=True)
+
+| name | what it does |
+|---|---|
+| `make_scene` | a scene by its name and fields |
+| `Simulation` | runs it; steered and looked into while it runs |
+| `analyze` | the numbers of a run directory, with errors |
+| `RunDirectory` | its arrays, and the MDAnalysis Universe |
+| `sweep`, `table` | many runs on all cores, and their numbers by point |
+| `read_fluid` | a fluid that fix mpc saved |
+
+Each is loaded when it is first asked for.
+"""
+
+import importlib
+from importlib.util import find_spec
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+if TYPE_CHECKING:
+    from analysis import RunDirectory, analyze
+    from narrows.scripting import make_scene, sweep, table
+    from run_files.fluid_file import read_fluid
+    from srd_driver import Simulation
+
+__all__ = [
+    "RunDirectory",
+    "Simulation",
+    "analyze",
+    "make_scene",
+    "read_fluid",
+    "sweep",
+    "table",
+]
+
+_MODULES = {
+    "RunDirectory": "analysis",
+    "Simulation": "srd_driver",
+    "analyze": "analysis",
+    "make_scene": "narrows.scripting",
+    "read_fluid": "run_files.fluid_file",
+    "sweep": "narrows.scripting",
+    "table": "narrows.scripting",
+}
+_OURS = ("analysis", "lammps_inputs", "lammps_plugin", "lattice", "run_files", "srd_driver")
+
+
+def _require_ours() -> None:
+    """That `import analysis` means our package: many scripts are called `analysis.py`.
+
+    Raises:
+        ImportError: naming the file that hides ours, and the remedy.
+    """
+    beside = Path(__file__).resolve().parent.parent
+    for name in _OURS:
+        spec = find_spec(name)
+        place = Path(spec.origin).resolve() if spec and spec.origin else None
+        if place and place.parent.parent != beside:
+            raise ImportError(
+                f"narrows needs its own package {name!r}, which {place} hides: rename that file or "
+                "folder, or start Python in another folder"
+            )
+
+
+_require_ours()
+
+
+def __getattr__(name: str) -> Any:
+    if name not in _MODULES:
+        raise AttributeError(f"module 'narrows' has no attribute {name!r}")
+    return getattr(importlib.import_module(_MODULES[name]), name)
+
+
+def __dir__() -> list[str]:
+    return sorted({*globals(), *__all__})

@@ -9,44 +9,20 @@ from rich.console import Console
 from rich.progress import BarColumn, Progress, TaskID, TextColumn, TimeRemainingColumn
 
 from srd_driver import Simulation
+from srd_driver.parallel import agree, communicator
+from srd_driver.progress_bar import LINE_SECONDS
 from srd_driver.sweep import Advance
 
 PACE_SECONDS = 300.0  # the time remaining is told from the pace of the last five minutes
 BAR = 100_000  # steps of the bar
-LINE_SECONDS = 30.0  # between two lines, and before the first
 
 ReportRuns = Callable[[Advance], None]
 ReportAnalysis = Callable[[int, int], None]
 
 
 def finish_with_progress(simulation: Simulation) -> None:
-    """Run to the end, showing rate, remaining time and the mean velocity since the start."""
-    if simulation.rank != 0 or not sys.stderr.isatty():
-        simulation.finish()
-        return
-    scene = simulation.scene
-    moving = bool(scene.system.species)
-    begin = simulation.time
-    position = simulation.mean_colloid_position() if moving else 0.0
-    with Progress(
-        TextColumn(scene.name, markup=False),
-        BarColumn(),
-        TextColumn("{task.completed:.0f} of {task.total:.0f} t0"),
-        TextColumn("{task.description}"),
-        TimeRemainingColumn(),
-        console=Console(stderr=True),
-    ) as progress:
-        task = progress.add_task("", total=scene.system.clock.end)
-
-        def report(now: Simulation) -> None:
-            rate = (now.time - begin) / max(progress.tasks[0].elapsed or 0.0, 1e-3)
-            description = f"{rate:.3g} t0/s"
-            if moving:
-                speed = (now.mean_colloid_position() - position) / (now.time - begin)
-                description += f", moving at {speed:+.4f} a0/t0"
-            progress.update(task, completed=now.time, description=description)
-
-        simulation.finish(report)
+    """Run to the end, on a terminal with a bar."""
+    simulation.finish(progress=agree(communicator(), sys.stderr.isatty))
 
 
 class Lines:

@@ -8,9 +8,11 @@ import numpy as np
 from lammps_inputs import Scene
 from lammps_inputs.color_outputs import color_outputs
 from lammps_inputs.system import TRAJECTORY, Array, Output, System
+from run_files.fluid_file import Fluid
 from run_files.progress import Progress
 from run_files.writing import replacing
 from srd_driver.dump import write_frame
+from srd_driver.errors import RunError
 from srd_driver.events import HardSpheres, PairReactions, Profile, WallReactions
 from srd_driver.events.initial import thermal_velocities
 from srd_driver.events.state import SPEED_BIN
@@ -20,6 +22,7 @@ class EventsSession:
     """The engine of events at work: a step is a look at the colours, at a set time."""
 
     suffix = "npz"
+    lammps = None
 
     def __init__(self, scene: Scene, directory: Path, progress: Progress) -> None:
         self._directory = directory
@@ -42,6 +45,9 @@ class EventsSession:
     @property
     def colloid_velocities(self) -> Array:
         return self._engine.velocities
+
+    def fluid(self) -> Fluid:
+        raise RunError("engine events: has no fluid")
 
     def mean_colloid_position(self) -> float:
         engine = self._engine

@@ -2,9 +2,13 @@
 
 import contextlib
 import ctypes
+import shutil
+import tempfile
 from collections.abc import Iterator
 from pathlib import Path
 from typing import Any
+
+import numpy as np
 
 from lammps_inputs import Scene
 from lammps_inputs.deck import script
@@ -12,10 +16,13 @@ from lammps_inputs.engines.engine import Start
 from lammps_inputs.engines.lammps import particle_group
 from lammps_inputs.system import Array
 from run_files.cutting import cut_output
+from run_files.fluid_file import Fluid, read_fluid
 from run_files.progress import Progress
 from srd_driver.errors import RunError
 from srd_driver.parallel import agree
 
+INITIAL_FLUID = "state.fluid"
+SAVED_FLUID = "now.fluid"
 LAST_WORD = b"LammpS RestartT\0"  # of a restart file
 
 
@@ -46,11 +53,12 @@ class LammpsSession:
         self._directory = directory
         self._comm = comm
         self._species = len(scene.system.species)
+        self._particles = scene.system.particles
         self._dimensions = scene.system.box.dimensions
         self._set_up = False
         self._begin, self._end = progress.step, scene.system.clock.total_steps
         self._sheared = bool(scene.system.shear_rate)
-        self._lammps = lammps(cmdargs=["-log", "none", "-screen", "none"], comm=comm)
+        self.lammps = lammps(cmdargs=["-log", "none", "-screen", "none"], comm=comm)
         start = Start(progress.step, progress.checkpoint)
         *setup, run = script(scene, engine, start).splitlines()
         assert run.startswith("run "), "the last line of a deck is its run"
@@ -58,8 +66,8 @@ class LammpsSession:
         if self._species:
             setup.append(f"variable mean_colloid_x equal xcm({particle_group(scene.system)},x)")
         with self._errors():
-            self._lammps.command("log log.lammps append")
-            self._lammps.commands_list(setup)
+            self.lammps.command("log log.lammps append")
+            self.lammps.commands_list(setup)
         if progress.checkpoint and comm.rank == 0:
             ctypes.CDLL(None).fflush(None)  # titles that LAMMPS wrote again, to be cut off
             for output in scene.system.outputs:
@@ -73,34 +81,61 @@ class LammpsSession:
     def colloid_velocities(self) -> Array:
         return self._colloid_rows("v")
 
+    def fluid(self) -> Fluid:
+        """Of LAMMPS's own atoms where the fluid is such, else of what the solvent's fix saves."""
+        if self.lammps.get_natoms() > self._particles:
+            return self._fluid_atoms()
+        if self.step == 0 and not self._set_up:  # the fix has not loaded it yet
+            return read_fluid(self._directory / INITIAL_FLUID)
+        folder = agree(self._comm, lambda: Path(tempfile.mkdtemp(prefix="narrows-")))
+        try:
+            with self._errors():
+                self.lammps.command(f"fix_modify solvent save {folder / SAVED_FLUID}")
+            return read_fluid(folder / SAVED_FLUID)
+        finally:
+            self._comm.barrier()
+            if self._comm.rank == 0:
+                shutil.rmtree(folder)
+
+    def _fluid_atoms(self) -> Fluid:
+        local = self.lammps.extract_global("nlocal")
+        arrays = self.lammps.numpy
+        fluid = arrays.extract_atom("type")[:local] > self._species
+        mine = [arrays.extract_atom(name)[:local][fluid].copy() for name in ("id", "x", "v")]
+        numbers, places, velocities = map(
+            np.concatenate, zip(*self._comm.allgather(mine), strict=True)
+        )
+        order = np.argsort(numbers)
+        return Fluid(places[order, : self._dimensions], velocities[order, : self._dimensions])
+
     def mean_colloid_position(self) -> float:
-        return float(self._lammps.extract_variable("mean_colloid_x"))
+        return float(self.lammps.extract_variable("mean_colloid_x"))
 
     def advance(self, steps: int) -> None:
         again = " pre no" if self._set_up else ""
         if self._sheared:  # fix deform tilts the box by the share of the whole that is done
             again = f" start {self._begin} stop {max(self._end, self.step + steps)}{again}"
         with self._errors():
-            self._lammps.command(f"run {steps}{again} post no")
+            self.lammps.command(f"run {steps}{again} post no")
         self._set_up = True
         self.step += steps
 
     def save(self, file: str) -> None:
         if not (self._directory / file).exists():
             with self._errors():
-                self._lammps.command(f"write_restart {file}")
+                self.lammps.command(f"write_restart {file}")
             self._set_up = False  # write_restart moves atoms between processes
         agree(self._comm, lambda: _require_whole(self._directory / file))
 
     def close(self) -> None:
-        self._lammps.close()
+        self.lammps.close()
 
     def _colloid_rows(self, name: str) -> Array:
         # where the fluid is atoms too, colloids come first: atom_modify first
-        local = self._lammps.extract_global("nlocal")
-        types = self._lammps.numpy.extract_atom("type")[:local]
+        local = self.lammps.extract_global("nlocal")
+        types = self.lammps.numpy.extract_atom("type")[:local]
         colloids = int((types <= self._species).sum())
-        rows: Array = self._lammps.numpy.extract_atom(name)[:colloids, : self._dimensions]
+        rows: Array = self.lammps.numpy.extract_atom(name)[:colloids, : self._dimensions]
         return rows
 
     @contextlib.contextmanager

@@ -6,6 +6,7 @@ import numpy as np
 
 from lammps_inputs import Scene
 from lammps_inputs.system import FLUID_AVERAGES, FLUID_PROFILE, TRAJECTORY, Array
+from run_files.fluid_file import Fluid
 from run_files.progress import Progress
 from run_files.writing import replacing
 from srd_driver.dump import write_frame
@@ -16,6 +17,7 @@ class ReferenceSession:
     """The reference engine with the output of docs/run-directory.md; resumes bit for bit."""
 
     suffix = "npz"
+    lammps = None
 
     def __init__(self, scene: Scene, directory: Path, progress: Progress) -> None:
         self._scene = scene
@@ -40,6 +42,10 @@ class ReferenceSession:
     @property
     def colloid_velocities(self) -> Array:
         return self._engine.colloid_velocities
+
+    def fluid(self) -> Fluid:
+        engine = self._engine
+        return Fluid(engine.fluid_positions.copy(), engine.fluid_velocities.copy())
 
     def mean_colloid_position(self) -> float:
         engine = self._engine

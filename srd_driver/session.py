@@ -1,8 +1,9 @@
 """What the simulation asks of an engine while it runs in its run directory."""
 
-from typing import Protocol
+from typing import Any, Protocol
 
 from lammps_inputs.system import Array
+from run_files.fluid_file import Fluid
 
 
 class Session(Protocol):
@@ -13,6 +14,7 @@ class Session(Protocol):
 
     step: int
     suffix: str  # of its checkpoint files
+    lammps: Any  # the object at work; None for an engine that is none of LAMMPS
 
     @property
     def colloid_positions(self) -> Array:
@@ -21,6 +23,9 @@ class Session(Protocol):
     @property
     def colloid_velocities(self) -> Array:
         """Velocities of the colloids of this process, (n, d): a view [a0/t0]."""
+
+    def fluid(self) -> Fluid:
+        """A copy of the whole solvent, which there is; called by every process."""
 
     def mean_colloid_position(self) -> float:
         """Mean unwrapped x of all colloids [a0]."""

@@ -13,6 +13,7 @@ from lammps_inputs import Scene, SceneError
 from lammps_inputs.engines import default_engine
 from lammps_inputs.system import Array
 from run_files.checksums import Checksum, GrowingFile
+from run_files.fluid_file import Fluid
 from run_files.names import checkpoint_name
 from run_files.progress import FORMAT, Progress, is_begun, write_failure, write_progress
 from run_files.writing import reach_disk
@@ -144,11 +145,42 @@ class Simulation:
         """Mean unwrapped x of all particles, of every process [a0]."""
         return self._running().mean_colloid_position()
 
-    def run(self, time: float, report: Callable[[Self], Any] | None = None) -> None:
+    @property
+    def lammps(self) -> Any:
+        """The `lammps` object at work, for commands and what else its Python module offers.
+
+            simulation.lammps.command("fix push colloids addforce 0.5 0 0")
+
+        A resume does not repeat such commands: it goes on with the scene.
+
+        Raises:
+            RunError: when the engine is none of LAMMPS.
+        """
+        running = self._running().lammps
+        if running is None:
+            raise RunError(f"engine {self.engine}: is none of LAMMPS")
+        return running
+
+    def fluid(self) -> Fluid:
+        """A copy of the whole fluid as it is now: positions and velocities, (N, d), by number.
+
+        Under mpirun every process has to call it, and has all of the fluid.
+
+        Raises:
+            RunError: when the scene has no fluid.
+        """
+        if self.scene.system.solvent is None:
+            raise RunError(f"scene {self.scene.name}: has no fluid")
+        return self._running().fluid()
+
+    def run(
+        self, time: float, report: Callable[[Self], Any] | None = None, progress: bool = False
+    ) -> None:
         """Simulate for `time`, rounded to whole sampling intervals, at least one.
 
         Output is written as it comes and checkpoints at their interval; `report` is called with
-        the simulation about twice a second.
+        the simulation about twice a second. With `progress` a bar is shown, in a notebook a
+        line that is renewed, where there is neither a line every half a minute.
 
         Raises:
             RunError: when the engine stops; what was written stays, `resume` goes on from the
@@ -156,11 +188,11 @@ class Simulation:
         """
         sample = self._clock.sample_steps
         samples = max(1, round(time / (sample * self._clock.time_step)))
-        self._run_until(self.step + samples * sample, report)
+        self._run_until(self.step + samples * sample, report, progress)
 
-    def finish(self, report: Callable[[Self], Any] | None = None) -> None:
+    def finish(self, report: Callable[[Self], Any] | None = None, progress: bool = False) -> None:
         """Run to the end of the scene's duration; as `run`."""
-        self._run_until(self._clock.total_steps, report)
+        self._run_until(self._clock.total_steps, report, progress)
 
     def stop(self) -> None:
         """Let the `run` or `finish` under way, or the next, return soon, a checkpoint written.
@@ -226,7 +258,21 @@ class Simulation:
             write_failure(self.directory, str(error))
         self.close()
 
-    def _run_until(self, end: int, report: Callable[[Self], Any] | None) -> None:
+    def _run_until(
+        self, end: int, report: Callable[[Self], Any] | None, progress: bool = False
+    ) -> None:
+        if progress and self._session:
+            from srd_driver.progress_bar import progress_bar
+
+            with progress_bar(self) as show:
+
+                def show_and_report(now: Self) -> None:
+                    show(now)
+                    if report:
+                        report(now)
+
+                self._run_until(end, show_and_report)
+            return
         sample = self._clock.sample_steps
         while self.step < end:
             session = self._running()

@@ -8,7 +8,8 @@ from typer.testing import CliRunner, Result
 from lammps_inputs import all_scenes
 from lammps_inputs.field_table import field_rows
 from narrows.cli import app
-from narrows.progress import LINE_SECONDS, Lines
+from narrows.progress import Lines
+from srd_driver.progress_bar import LINE_SECONDS
 from srd_driver.sweep import Advance
 from tests.conftest import ROOT
 
