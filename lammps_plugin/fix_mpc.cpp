@@ -2,6 +2,7 @@
 
 #include "core/cell_coupling.h"
 #include "core/fluid_file.h"
+#include "mpc_warnings.h"
 
 #include "atom.h"
 #include "comm.h"
@@ -39,6 +40,8 @@ FixMPC<D>::FixMPC(LAMMPS *lmp, int narg, char **arg) :
   extscalar = extvector = extarray = 0;
   dynamic_group_allow = 0;
   comm_forward = comm_reverse = MpcColloids<D>::MOST_CARRIED;
+  warn_of_unread_fluid(lmp, id);
+  if (!given_.colloid_bit) expect_no_atoms(lmp, given_.edge);
   if (!given_.profile_file.empty())
     profile_ = std::make_unique<MpcProfile>(lmp, given_.profile_file, given_.profile_append, id);
   if (given_.flow.every) flow_ = std::make_unique<MpcFlow<D>>(lmp, given_.flow, processes_, id);
@@ -67,7 +70,12 @@ template <int D> void FixMPC<D>::init()
       state_->load(given_.load_file);
     else
       state_->create(colloids_.all(), coupling());
+    warn_of_density<D>(lmp, given_.density, solver_->particles(), given_.edge, colloids_.all(),
+                       coupling());
   }
+  if (given_.colloid_bit && !looked_)
+    warn_of_unfelt<D>(lmp, given_.colloid_bit, coupling(), processes_);
+  looked_ = true;
   check_processes();
   if (update->dt * given_.every != interval_)
     error->all(FLERR, "fix mpc: timestep: must not change");

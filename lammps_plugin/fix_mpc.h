@@ -65,6 +65,7 @@ template <int D> class FixMPC : public Fix {
   double interval_ = 0;
   bool open_ = false;        // within an interval
   bool restored_ = false;    // from a restart, not yet gone on
+  bool looked_ = false;      // for what the fluid does not feel
 
   std::vector<mpc::Layer> layers_;
   bigint layers_step_ = -1;
