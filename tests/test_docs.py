@@ -3,6 +3,7 @@
 import doctest
 import importlib
 import re
+import tomllib
 from pathlib import Path
 
 import pytest
@@ -10,7 +11,8 @@ import pytest
 from narrows.papers.table import main as renew_table
 from tests.conftest import ROOT
 
-PAGES = [ROOT / "README.md", *sorted((ROOT / "docs").glob("*.md"))]
+FRONT = [ROOT / name for name in ("README.md", "CONTRIBUTING.md", "CHANGELOG.md")]
+PAGES = [*FRONT, *sorted((ROOT / "docs").glob("*.md"))]
 PACKAGES = ("lammps_inputs", "srd_driver", "run_files", "analysis", "lattice", "narrows")
 WITH_EXAMPLES = [
     ".".join(path.relative_to(ROOT).with_suffix("").parts)
@@ -42,7 +44,26 @@ def test_links_resolve(page: Path) -> None:
 
 def test_the_readme_leads_to_every_page() -> None:
     linked = set(LINK.findall(PAGES[0].read_text(encoding="utf-8")))
-    assert {f"docs/{page.name}" for page in PAGES[1:]} <= linked
+    assert {str(page.relative_to(ROOT)) for page in PAGES[1:]} <= linked
+
+
+def test_the_version_is_told_alike() -> None:
+    """In the metadata, to those who cite, and at the top of the changes."""
+    version = tomllib.loads((ROOT / "pyproject.toml").read_text())["project"]["version"]
+    assert f"\nversion: {version}\n" in (ROOT / "CITATION.cff").read_text(encoding="utf-8")
+    newest = re.search(r"^## (\S+?),? ", FRONT[2].read_text(encoding="utf-8"), re.MULTILINE)
+    assert newest
+    assert newest[1] == version
+
+
+def test_the_readme_begins_with_what_it_is_for() -> None:
+    """A picture and the speed, then the two commands, that for use first."""
+    text = FRONT[0].read_text(encoding="utf-8")
+    before, first, *_ = text.split("```sh\n")
+    assert "![" in before
+    assert "fix srd" in before
+    assert "pytest" not in before + first  # .ci/run takes the first line that has it
+    assert first.startswith("python3 -m venv .venv && .venv/bin/pip install . && ")
 
 
 def test_what_the_theory_page_names_is_there() -> None:
