@@ -9,6 +9,7 @@
 |---|---|
 | `make_scene` | a scene by its name and fields |
 | `Simulation` | runs it; steered and looked into while it runs |
+| `run_until` | a run that ends when its quantities are precise |
 | `analyze` | the numbers of a run directory, with errors |
 | `RunDirectory` | its arrays, and the MDAnalysis Universe |
 | `sweep`, `table` | many runs on all cores, and their numbers by point |
@@ -25,6 +26,7 @@ from typing import TYPE_CHECKING, Any
 if TYPE_CHECKING:
     from analysis import RunDirectory, analyze
     from narrows.scripting import make_scene, sweep, table
+    from narrows.until import run_until
     from run_files.fluid_file import read_fluid
     from srd_driver import Simulation
 
@@ -34,6 +36,7 @@ __all__ = [
     "analyze",
     "make_scene",
     "read_fluid",
+    "run_until",
     "sweep",
     "table",
 ]
@@ -44,6 +47,7 @@ _MODULES = {
     "analyze": "analysis",
     "make_scene": "narrows.scripting",
     "read_fluid": "run_files.fluid_file",
+    "run_until": "narrows.until",
     "sweep": "narrows.scripting",
     "table": "narrows.scripting",
 }

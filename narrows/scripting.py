@@ -8,6 +8,7 @@ from analysis import SweepTable, tabulate
 from lammps_inputs import Scene, all_scenes
 from lammps_inputs.scenes import make_scene as scene_named
 from narrows.progress import progress_of_runs
+from narrows.until import sweep_until
 from srd_driver import RunError, sweep_definition
 from srd_driver.sweep import available_cores, run_all
 
@@ -35,6 +36,7 @@ def sweep(
     repeats: int = 1,
     engine: str | None = None,
     jobs: int | None = None,
+    until: Sequence[str] = (),
     **fields: Any,
 ) -> SweepTable:
     """Run a scene at all combinations of field values, and analyse it: as `narrows sweep`.
@@ -51,20 +53,27 @@ def sweep(
         repeats: runs of each point, with the seeds seed, seed + 1, ...
         engine: of all runs; default: the first that can run the scene.
         jobs: runs at a time; default: the cores.
+        until: how precisely every point is to be known, as `settling_speed=2%`
+            (`narrows.until.sweep_until`).
         fields: of the scene, for all points.
 
     Raises:
         SceneError: naming each bad point, its field, value and what is allowed.
         RunError: when the directory holds something else, or runs failed: one line each.
     """
-    asked = sweep_definition.store(
-        sweep_definition.plan(Path(directory), scene, fields, over, repeats, engine)
-    )
+    asked = sweep_definition.plan(Path(directory), scene, fields, over, repeats, engine)
     jobs = jobs or available_cores()
+    missed: list[str] = []
     with progress_of_runs() as (report_runs, report_analysis):
-        failures = run_all(asked.runs, jobs, report_runs)
-        found = tabulate(asked.directory, jobs, renew=False, report=report_analysis)
-    problems = [f"{each.run.folder.name}: {each.message}" for each in failures] + found.problems
+        if until:
+            done = sweep_until(asked, until, jobs, None, report_runs, report_analysis)
+            failures, found, missed = done.failures, done.table, done.missed
+        else:
+            asked = sweep_definition.store(asked)
+            failures = run_all(asked.runs, jobs, report_runs)
+            found = tabulate(asked.directory, jobs, renew=False, report=report_analysis)
+    problems = [f"{each.run.folder.name}: {each.message}" for each in failures]
+    problems += found.problems + missed
     if problems:
         raise RunError("\n".join(problems))
     return found
