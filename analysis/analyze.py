@@ -43,6 +43,8 @@ def analyze(directory: str | Path) -> dict[str, Any]:
     figures = {name: figure for findings in found for name, figure in findings.figures.items()}
     summary["warnings"] = [warning for findings in found for warning in findings.warnings]
     summary["figures"] = sorted(figures)
+    if left_out := [line for findings in found for line in findings.left_out]:
+        summary["left_out"] = left_out
     for name, figure in figures.items():
         figure.savefig(run.path / name, dpi=150)
     tables = {name: table for findings in found for name, table in findings.tables.items()}

@@ -49,7 +49,7 @@ def mean(series: Runs, interval: float | None = None) -> Estimate:
     if np.all(samples == samples[0]):
         return Estimate(value, 0.0)  # not the rounding of the mean
     if len(samples) < FEWEST_SAMPLES:
-        few = f"at least: {len(samples)} samples are too few"
+        few = f"lower bound: run longer, {len(samples)} samples are too few"
         return replace(mean_of_independent(samples), reason=few)
     fluctuation = fluctuation_of_mean(runs)
     error, freedom = fluctuation.student()
@@ -146,6 +146,6 @@ def _too_slow(fluctuation: Fluctuation, samples: int, interval: float | None) ->
     scale, unit = (1.0, "samples") if interval is None else (interval, "t0")
     slow = scale * motion
     return (
-        f"at least, not known: motion of about {slow:.2g} {unit} is slow for "
-        f"{scale * samples:.4g} {unit}; run {ADVISED * slow:.2g} {unit} or more"
+        f"lower bound: run longer, at least {ADVISED * slow:.2g} {unit}; motion of about "
+        f"{slow:.2g} {unit} is slow for {scale * samples:.4g} {unit}"
     )

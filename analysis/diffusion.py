@@ -98,7 +98,11 @@ def diffusion(x: Array, velocity: Array, interval: float) -> Diffusion:
     length = len(x) // SEGMENTS
     last = length // 4
     if last < MIN_LAGS:
-        raise ValueError(f"{len(x)} frames; at least {4 * MIN_LAGS * SEGMENTS} are needed")
+        needed = 4 * MIN_LAGS * SEGMENTS
+        raise ValueError(
+            f"run longer, at least {needed * interval:g} t0: {len(x)} frames; at least {needed} "
+            "are needed"
+        )
     drift = (x[-1] - x[0]).mean() / (len(x) - 1)
     x = x - drift * np.arange(len(x))[:, None]
     velocity = velocity - velocity.mean()

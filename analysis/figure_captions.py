@@ -2,11 +2,11 @@
 
 CAPTIONS = {
     "clusters.png": "Size of the largest cluster and number of clusters against time.",
-    "colloids.png": "The particles in the box at the last output, in the colours of their species.",
     "colour_flow.png": "Density and velocity of each colour across the field.",
     "diffusion.png": "Mean squared displacement about the mean drift against the lag, with the "
     "line that the diffusion coefficient is taken from.",
     "diffusivity.png": "Diffusivity profile for each reaction probability, with error bars.",
+    "flow.png": "Mean flow of the fluid: stream lines over its speed, by colour.",
     "lane_order.png": "Order parameter of lanes against time.",
     "pair_correlation.png": "Pair correlation of the colloids along the channel.",
     "profile.png": "Velocity of the fluid across the slit, mean over time with error bars.",
@@ -15,7 +15,8 @@ CAPTIONS = {
     "settling_speed.png": "Settling speed against time, running means in both frames.",
     "shear_flow.png": "Velocity of the colloids between the moving walls.",
     "shear_wave.png": "Amplitude of the shear wave against time, with the fitted decay.",
-    "snapshot.png": "The particles at the last output, in the colours of their species.",
+    "snapshot.png": "The particles in their box at the last output; of a single species the head "
+    "of the chain is dark, the tail light, else each species has a colour.",
     "space_time.png": "Place of every colloid along the channel against time.",
     "spacings.png": "Mean spacings of neighbours, in groups from head to tail, against time.",
     "suspension.png": "The colloids at the last output, clusters by colour.",

@@ -19,12 +19,14 @@ class Findings:
         figures: by file name.
         tables: columns of equal length by name, by file name.
         warnings: what no correct run shows, one line each.
+        left_out: what the run is too short or too small to show, one line each.
     """
 
     entries: Mapping[str, Any] = field(default_factory=dict)
     figures: Mapping[str, Figure] = field(default_factory=dict)
     tables: Mapping[str, Mapping[str, Sequence[Any]]] = field(default_factory=dict)
     warnings: tuple[str, ...] = ()
+    left_out: tuple[str, ...] = ()
 
 
 def in_si(run: RunDirectory, estimate: Estimate, length: int = 0, time: int = 0) -> dict[str, Any]:

@@ -14,6 +14,7 @@ from narrows.commands.deck import deck
 from narrows.commands.diffusivity import diffusivity
 from narrows.commands.export import export
 from narrows.commands.lattice import app as lattice_app
+from narrows.commands.picture import movie, picture
 from narrows.commands.report import report
 from narrows.commands.reproduce import reproduce
 from narrows.commands.run import run
@@ -36,6 +37,8 @@ COMMANDS = (
     status,
     analyze,
     report,
+    picture,
+    movie,
     export,
     diffusivity,
     reproduce,

@@ -101,3 +101,19 @@ def progress_of_runs() -> Iterator[tuple[ReportRuns, ReportAnalysis]]:
             show("analysis", done, total, f"{done} of {total} runs analysed")
 
         yield report_runs, report_analysis
+
+
+@contextmanager
+def progress_of_pictures() -> Iterator[ReportAnalysis | None]:
+    """A bar on a terminal, for pictures drawn one after the other."""
+    if not sys.stderr.isatty():
+        yield None
+        return
+    with Progress(
+        BarColumn(),
+        TextColumn("{task.completed} of {task.total} pictures"),
+        TimeRemainingColumn(),
+        console=Console(stderr=True),
+    ) as progress:
+        task = progress.add_task("", total=None)
+        yield lambda done, total: progress.update(task, completed=done, total=total)

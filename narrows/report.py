@@ -35,7 +35,7 @@ def report_run(directory: Path) -> Path:
     state = "finished" if summary["finished"] else "not finished"
     sections = [
         _section("Numbers", _numbers(summary)),
-        _section("Pictures", _pictures(directory, summary["figures"])),
+        _section("Pictures", _pictures(directory, summary["figures"], summary.get("left_out", ()))),
         _section("The scene", _fields(manifest)),
         _section("How it was made", _provenance(manifest, summary)),
         _section("To cite", _cite(citations(manifest))),
@@ -109,12 +109,13 @@ def _numbers(summary: Mapping[str, Any]) -> str:
     return warnings + html.table(("quantity", "value", "note"), rows)
 
 
-def _pictures(directory: Path, figures: Sequence[str]) -> str:
+def _pictures(directory: Path, figures: Sequence[str], left_out: Sequence[str]) -> str:
     pictures = (
         html.picture(directory / name, caption(name), f"{caption(name)} ({name})")
         for name in figures
     )
-    return f'<div class="pair">{"".join(pictures)}</div>' if figures else "<p>None.</p>"
+    notes = "".join(f'<p class="note">Not drawn: {escape(line)}.</p>' for line in left_out)
+    return f'<div class="pair">{"".join(pictures)}</div>{notes}'
 
 
 def _table(table: SweepTable) -> str:

@@ -1,5 +1,7 @@
 """Flow of the fluid between walls: its profile, mean velocity and Reynolds number."""
 
+from collections.abc import Sequence
+
 import numpy as np
 from matplotlib.figure import Figure
 
@@ -29,24 +31,37 @@ def slit_flow(run: RunDirectory, fit: tuple[float, float] | None) -> Findings:
         reynolds = Estimate(None, None, "kinetic theory has no viscosity for this fluid")
     else:
         reynolds = mean_velocity.scaled(flow.reynolds_number(1.0, run.width, theory))
-    profile = flow.momentum_profile(counts, velocity).mean(axis=0)
+    bins = [
+        correlated_mean.mean(series, run.interval)
+        for series in flow.momentum_profile(counts, velocity).T
+    ]
     return Findings(
         {"fluid_velocity": mean_velocity.as_json(), "reynolds_number": reynolds.as_json()},
-        {"profile.png": draw(fluid.y, profile, run.width, fit)},
+        {"profile.png": draw(fluid.y, bins, run.width, fit)},
     )
 
 
-def draw(y: Array, velocity: Array, width: float, fit: tuple[float, float] | None) -> Figure:
+def draw(
+    y: Array, velocity: Sequence[Estimate], width: float, fit: tuple[float, float] | None
+) -> Figure:
     """Mean velocity of the fluid across the slit, with the fitted parabola.
 
     Args:
         y: bin centres, (bins,) [a0].
-        velocity: time mean in each bin, (bins,) [a0/t0].
+        velocity: time mean in each bin, with its error, (bins,) [a0/t0].
         width: of the slit [a0].
         fit: v_max and v_wall [a0/t0]; None where no parabola is expected.
     """
     figure, axes = one_panel("across the slit $y$ [$a_0$]", "fluid velocity $v_x$ [$a_0/t_0$]")
-    axes.plot(y, velocity, "o", markersize=4, label="mean over each bin")
+    axes.errorbar(
+        y,
+        [each.number for each in velocity],
+        [each.error or 0.0 for each in velocity],
+        fmt="o",
+        markersize=4,
+        capsize=2,
+        label="mean over each bin, with its standard error",
+    )
     if fit is not None:
         v_max, v_wall = fit
         fine = np.linspace(0, width, 400)

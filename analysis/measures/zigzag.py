@@ -13,6 +13,8 @@ from analysis.run_directory import RunDirectory
 
 QUANTITIES = ("zigzag.amplitude_rms",)
 
+FEWEST_ROWS = 3  # inner colloids that make a picture of a chain
+
 
 def measure(run: RunDirectory) -> Findings:
     """Amplitudes, beside what unrelated displacements would give, and their history."""
@@ -26,11 +28,13 @@ def measure(run: RunDirectory) -> Findings:
         "local_rms": np.sqrt((local[used] ** 2).mean(axis=0)).tolist(),
     }
     picture = draw(run.times(run.particles().steps), amplitude, local, run.equilibration_time)
-    return Findings({"zigzag": entry}, {"zigzag.png": picture})
+    few = local.shape[1] < FEWEST_ROWS
+    line = f"zigzag about each colloid: a picture takes {FEWEST_ROWS + 2} colloids"
+    return Findings({"zigzag": entry}, {"zigzag.png": picture}, left_out=(line,) if few else ())
 
 
 def draw(times: Array, amplitude: Array, local: Array, equilibration: float) -> Figure:
-    """Zigzag of the whole chain against time, and about each colloid.
+    """Zigzag of the whole chain against time, and about each colloid where there are several.
 
     Args:
         times: (T,) [t0].
@@ -38,12 +42,17 @@ def draw(times: Array, amplitude: Array, local: Array, equilibration: float) -> 
         local: about each inner colloid, head first, (T, N - 2) [a0].
         equilibration: time averages leave out [t0].
     """
-    figure = Figure(figsize=(7, 6), layout="constrained")
-    above, below = figure.subplots(2, 1, sharex=True)
+    rows = 2 if local.shape[1] >= FEWEST_ROWS else 1
+    figure = Figure(figsize=(7, 3 * rows), layout="constrained")
+    above, *others = figure.subplots(rows, 1, sharex=True, squeeze=False)[:, 0]
     above.plot(times, amplitude, linewidth=0.8)
     above.axhline(0, color="0.7", linewidth=0.8)
     above.set_ylabel("zigzag amplitude [$a_0$]")
     mark_equilibration(above, equilibration)
+    if not others:
+        above.set_xlabel(TIME)
+        return figure
+    (below,) = others
     limit = float(np.abs(local).max()) or 1.0
     image = below.imshow(
         local.T,

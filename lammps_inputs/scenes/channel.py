@@ -165,6 +165,7 @@ class Channel(FluidScene):
                 "colloid_temperature",
                 "diffusion",
                 "space_time",
+                "snapshot",
                 *(("spacings", "pair_correlation", "overlaps") if self.colloids >= 2 else ()),
                 *(("zigzag",) if self.colloids >= 3 else ()),
             ),

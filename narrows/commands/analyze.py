@@ -41,6 +41,8 @@ def analyze(
     files = ["summary.json", *summary.get("tables", ()), *summary["figures"]]
     files_line = f"written to {directory}: {', '.join(files)}"
     console.print(printable(files_line), highlight=False, soft_wrap=True)
+    for line in summary.get("left_out", ()):
+        console.print(printable(f"not drawn: {line}"), highlight=False, soft_wrap=True)
     warn(summary["warnings"])
 
 

@@ -50,8 +50,8 @@ def test_a_relative_error_is_that_of_the_modulus() -> None:
 
 
 def test_an_error_that_is_not_known_is_never_small_enough() -> None:
-    assert not TWO_PERCENT.is_met(Estimate(1.0, 0.001, "at least, not known"))
-    assert TWO_PERCENT.growth(Estimate(1.0, 0.001, "at least, not known")) > 1
+    assert not TWO_PERCENT.is_met(Estimate(1.0, 0.001, "lower bound: run longer"))
+    assert TWO_PERCENT.growth(Estimate(1.0, 0.001, "lower bound: run longer")) > 1
     for missing in (Estimate(None, None, "too short"), Estimate(1.0, None), Estimate(0.0, 0.1)):
         assert TWO_PERCENT.reached(missing) == math.inf
         assert TWO_PERCENT.growth(missing) == MOST_GROWTH
