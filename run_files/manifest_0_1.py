@@ -99,7 +99,7 @@ def _measures(colloids: int, walls: bool, shear_wave: float) -> tuple[str, ...]:
     elif shear_wave:
         measures.append("shear_wave")
     if colloids:
-        measures += ["settling_speed", "colloid_temperature", "diffusion", "space_time"]
+        measures += ["settling_speed", "colloid_temperature", "diffusion", "space_time", "snapshot"]
     if colloids >= 2:
         measures += ["spacings", "pair_correlation", "overlaps"]
     if colloids >= 3:

@@ -31,7 +31,7 @@ AVERAGES = {
     "kind": "table",
     "columns": ["fluid_temperature", "mean_velocity_x"],
 }
-OF_COLLOIDS = ["settling_speed", "colloid_temperature", "diffusion", "space_time"]
+OF_COLLOIDS = ["settling_speed", "colloid_temperature", "diffusion", "space_time", "snapshot"]
 OF_PAIRS = ["spacings", "pair_correlation", "overlaps"]
 
 

@@ -208,6 +208,7 @@ def test_channel(tmp_path: Path) -> None:
         "diffusion.png",  # g(x) of walks so slow is noise
         "profile.png",
         "settling_speed.png",
+        "snapshot.png",
         "space_time.png",
         "spacings.png",
         "zigzag.png",
@@ -238,7 +239,12 @@ def test_single_colloid_has_no_chain(tmp_path: Path) -> None:
         "reason": "run longer, at least 320 t0: 96 frames; at least 320 are needed",
     }
     assert close(summary["settling_speed"], 0.02)
-    assert summary["figures"] == ["profile.png", "settling_speed.png", "space_time.png"]
+    assert summary["figures"] == [
+        "profile.png",
+        "settling_speed.png",
+        "snapshot.png",
+        "space_time.png",
+    ]
 
 
 def test_two_colloids_have_a_spacing_and_no_zigzag(tmp_path: Path) -> None:
