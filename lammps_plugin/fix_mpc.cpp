@@ -49,7 +49,7 @@ FixMPC<D>::FixMPC(LAMMPS *lmp, int narg, char **arg) :
 
 template <int D> int FixMPC<D>::setmask()
 {
-  return INITIAL_INTEGRATE | PRE_REVERSE | FINAL_INTEGRATE | END_OF_STEP;
+  return INITIAL_INTEGRATE | PRE_REVERSE | END_OF_STEP;
 }
 
 template <int D> void FixMPC<D>::init()
@@ -189,10 +189,15 @@ template <int D> void FixMPC<D>::restart(char *buffer)
   });
 }
 
-template <int D> void FixMPC<D>::add_forces()
+template <int D> void FixMPC<D>::add_forces(bool moving)
 {
   colloids_.follow();
-  guarded([&] { coupling()->forces(colloids_.seen(), colloids_.forces()); });
+  guarded([&] {
+    if (moving)
+      coupling()->step(update->dt, colloids_.seen(), colloids_.forces());
+    else
+      coupling()->forces(colloids_.seen(), colloids_.forces());
+  });
   colloids_.apply_forces();
 }
 
@@ -214,7 +219,7 @@ template <int D> void FixMPC<D>::setup_pre_reverse(int, int)
     if (!couples_every_step() || colloids_.repeat_pulls()) return;
     guarded([&] { solver_->find_near(colloids_.seen(), colloids_.speed()); });
   }
-  if (couples_every_step()) add_forces();
+  if (couples_every_step()) add_forces(false);
 }
 
 template <int D> void FixMPC<D>::setup(int)
@@ -230,17 +235,11 @@ template <int D> void FixMPC<D>::initial_integrate(int)
     guarded([&] { solver_->begin_interval(colloids_.seen(), colloids_.speed()); });
     open_ = true;
   }
-  if (couples_every_step()) guarded([&] { coupling()->drift(update->dt); });
 }
 
 template <int D> void FixMPC<D>::pre_reverse(int, int)
 {
-  if (couples_every_step()) add_forces();
-}
-
-template <int D> void FixMPC<D>::final_integrate()
-{
-  if (couples_every_step()) coupling()->kick(update->dt);
+  if (couples_every_step()) add_forces(true);
 }
 
 template <int D> void FixMPC<D>::end_of_step()

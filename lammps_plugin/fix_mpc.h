@@ -28,7 +28,6 @@ template <int D> class FixMPC : public Fix {
   void setup(int) override;
   void initial_integrate(int) override;
   void pre_reverse(int, int) override;
-  void final_integrate() override;
   void end_of_step() override;
 
   double compute_scalar() override;
@@ -51,7 +50,7 @@ template <int D> class FixMPC : public Fix {
   bool couples_every_step() { return coupling() && coupling()->every_step(); }
   void check_processes();
   void remove_momentum();
-  void add_forces();
+  void add_forces(bool moving);
   template <class Action> void guarded(const Action &);
   const std::vector<mpc::Layer> &layers();
 

@@ -18,6 +18,7 @@ template <int D> class ColloidCells {
   {
     grid_ = grid;
     head_.assign(grid.cells(), -1);
+    only_.assign(grid.cells(), NOBODY);
     entries_.clear();
   }
 
@@ -60,6 +61,7 @@ template <int D> class ColloidCells {
       for (int r = 0; r < length; ++r) {
         const double distance = across + along[r];
         if (!(distance < most)) continue;
+        only_[cell + r] = head_[cell + r] < 0 ? colloid : SEVERAL;
         entries_.push_back({colloid, head_[cell + r]});
         head_[cell + r] = static_cast<int>(entries_.size()) - 1;
         visit(cell + r, distance);
@@ -75,6 +77,10 @@ template <int D> class ColloidCells {
 
   bool any(int cell) const { return head_[cell] >= 0; }
 
+  // The colloid of a cell that has just one, else one of these.
+  static constexpr int NOBODY = -1, SEVERAL = -2;
+  int only(int cell) const { return only_[cell]; }
+
   template <class Visit> void each(int cell, const Visit &visit) const
   {
     for (int e = head_[cell]; e >= 0; e = entries_[e].next) visit(entries_[e].colloid);
@@ -85,6 +91,7 @@ template <int D> class ColloidCells {
  private:
   Grid<D> grid_{{}, {}, 1.0};
   std::vector<int> head_;    // of each cell, its list of entries; -1 for none
+  std::vector<int> only_;
   std::vector<Entry> entries_;
   std::array<std::vector<double>, D> squares_;    // of distances along each axis, by row
 };

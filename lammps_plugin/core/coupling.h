@@ -62,11 +62,10 @@ template <int D> class Coupling {
   const std::vector<int> &taken() const { return taken_; }
   virtual void ready() {}
 
-  // Velocity Verlet of what was taken: positions; then forces, also on the colloids; then
-  // velocities.
-  virtual void drift(double /*time*/) {}
+  // Forces on what was taken, and on the colloids; and a step of velocity Verlet of what was taken,
+  // once the colloids have come to where it ends.
   virtual void forces(const Colloids &, std::vector<Push<D>> & /*on_colloids*/) {}
-  virtual void kick(double /*time*/) {}
+  virtual void step(double /*time*/, const Colloids &, std::vector<Push<D>> & /*on_colloids*/) {}
   virtual void give_back(Fluid<D> &) {}
 
   // After the flight. The grid of the next collision; for each of its cells, the square of the speed

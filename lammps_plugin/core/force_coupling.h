@@ -9,7 +9,9 @@
 #include "near_fluid.h"
 #include "streaming.h"
 
+#include <cstdint>
 #include <cstdio>
+#include <cstring>
 #include <map>
 
 namespace mpc {
@@ -57,27 +59,37 @@ template <int D> class ForceCoupling : public Coupling<D> {
     for (auto k = taken_.size(); k < candidates.size(); ++k) taken_.push_back(candidates[k].index);
   }
 
-  // Sort what was taken by colloid, and find the forces on it.
+  // Lay out what was taken by colloid, and find the forces on it. What belongs to a colloid begins
+  // and ends at whole lanes; the places that this leaves hold nobody, far away.
   void ready() override
   {
     const auto &candidates = near_.candidates();
     const int colloids = static_cast<int>(near_.colloids().size());
-    start_.assign(colloids + 1, 0);
-    for (const auto &candidate : candidates) ++start_[candidate.colloid + 1];
-    for (int c = 0; c < colloids; ++c) start_[c + 1] += start_[c];
-
-    const int count = static_cast<int>(candidates.size());
-    taken_.resize(count);
-    ids_.resize(count);
-    with_all_.assign(count, false);
+    std::vector<int> counts(colloids);
+    for (const auto &candidate : candidates) ++counts[candidate.colloid];
+    spans_.clear();
+    int places = 0;
+    for (int c = 0; c < colloids; ++c) {
+      spans_.push_back({places, places + counts[c], (places + counts[c] + LANES - 1) / LANES * LANES});
+      places = spans_[c].end;
+    }
+    ids_.resize(places);
+    with_all_.assign(places, false);
     for (int a = 0; a < D; ++a)
-      for (auto *values : {&x_[a], &v_[a], &old_[a], &new_[a], &pull_[a]}) values->resize(count);
-    auto next = start_;
-    place_.resize(count);
-    for (int k = 0; k < count; ++k) {
-      const auto &candidate = candidates[k];
-      const int at = place_[k] = next[candidate.colloid]++;
-      taken_[at] = candidate.index;
+      for (auto *values : {&x_[a], &v_[a], &acceleration_[a]}) values->resize(places);
+    for (int c = 0; c < colloids; ++c)
+      for (int k = spans_[c].last; k < spans_[c].end; ++k)
+        for (int a = 0; a < D; ++a) {
+          x_[a][k] = near_.colloids()[c].x[a] + FAR * near_.reach(0);
+          v_[a][k] = 0;
+        }
+
+    std::vector<int> next;
+    for (const auto &span : spans_) next.push_back(span.first);
+    place_.clear();
+    for (const auto &candidate : candidates) {
+      const int at = next[candidate.colloid]++;
+      place_.push_back(at);
       ids_[at] = candidate.particle.id;
       for (int a = 0; a < D; ++a) {
         x_[a][at] = candidate.particle.x[a];
@@ -92,74 +104,43 @@ template <int D> class ForceCoupling : public Coupling<D> {
       of_colloid_.push_back(interactions_.at(colloid.type));
     std::vector<Push<D>> unused(colloids);
     forces(near_.colloids(), unused);
-    std::swap(old_, new_);
     pair_fast();
-  }
-
-  void drift(double time) override
-  {
-    std::array<double *, D> x, v;
-    PerParticle<D> acceleration;
-    for (int a = 0; a < D; ++a) {
-      x[a] = x_[a].data();
-      v[a] = v_[a].data();
-      acceleration.values[a] = old_[a].data();
-    }
-    try {
-      stream<D>(x, v, acceleration, time, walls_, 0, static_cast<int>(taken_.size()));
-    } catch (const TooManyBounces &bounces) {
-      throw bounces.fault(static_cast<std::uint32_t>(ids_[bounces.index]));
-    }
   }
 
   void forces(const std::vector<Colloid<D>> &colloids, std::vector<Push<D>> &on_colloids) override
   {
-    for (int c = 0; c < static_cast<int>(colloids.size()); ++c) {
-      check_allowance(colloids[c], near_.colloids()[c]);
-      on_colloids[c].linear = force_of(colloids[c], of_colloid_[c], start_[c], start_[c + 1]);
-    }
-    for (const auto &pair : others_) {
-      const auto &colloid = colloids[pair.colloid];
-      const auto &interaction = of_colloid_[pair.colloid];
-      Vector<D> separation;
-      for (int a = 0; a < D; ++a) separation[a] = x_[a][pair.particle] - colloid.x[a];
-      const double r2 = square<D>(separation);
-      if (!(r2 > square_of(CORE * interaction.sigma))) fault_in_core(pair.particle, colloid, r2);
-      const double strength = force_over_distance(interaction, r2);
-      for (int a = 0; a < D; ++a) {
-        new_[a][pair.particle] += strength * separation[a];
-        on_colloids[pair.colloid].linear[a] -= strength * separation[a];
-      }
-    }
+    evaluate<false>(0, colloids, on_colloids);
   }
 
-  // Streaming, bounces included, has added the whole of the old acceleration.
-  void kick(double time) override
+  void step(double time, const std::vector<Colloid<D>> &colloids,
+            std::vector<Push<D>> &on_colloids) override
   {
-    const int count = static_cast<int>(taken_.size());
-    for (int a = 0; a < D; ++a) {
-      double *__restrict v = v_[a].data();
-      const double *before = old_[a].data(), *after = new_[a].data();
-      for (int k = 0; k < count; ++k) v[k] += 0.5 * time * (after[k] - before[k]);
-    }
-    std::swap(old_, new_);
-    pair_fast();
+    if (evaluate<true>(time, colloids, on_colloids)) pair_fast();
   }
 
   void give_back(Fluid<D> &fluid) override
   {
-    for (int k = 0; k < static_cast<int>(taken_.size()); ++k)
+    for (std::size_t k = 0; k < taken_.size(); ++k)
       for (int a = 0; a < D; ++a) {
-        fluid.x[a][taken_[k]] = x_[a][k];
-        fluid.v[a][taken_[k]] = v_[a][k];
+        fluid.x[a][taken_[k]] = x_[a][place_[k]];
+        fluid.v[a][taken_[k]] = v_[a][place_[k]];
       }
   }
 
  private:
   static constexpr double CORE = 0.5;    // of sigma: an energy of 16000 epsilon
+  static constexpr double FAR = 1e6;     // of what a particle can fly in an interval
   static constexpr int LANES = 8;
 
+  // So many numbers that a processor with the widest vectors takes at once.
+  using Lanes = double __attribute__((vector_size(LANES * sizeof(double))));
+  using Mask = std::int64_t __attribute__((vector_size(LANES * sizeof(double))));
   using Pair = typename NearFluid<D>::Pair;
+
+  // Places of the particles of a colloid: first ... last - 1, with nobody until end.
+  struct Span {
+    int first, last, end;
+  };
 
   static double square_of(double a) { return a * a; }
 
@@ -174,74 +155,168 @@ template <int D> class ForceCoupling : public Coupling<D> {
     return r2 < square_of(cutoff(of.sigma)) ? strength : 0.0;
   }
 
+  static Lanes load(const double *from)
+  {
+    Lanes lanes;
+    std::memcpy(&lanes, from, sizeof lanes);
+    return lanes;
+  }
+
+  static void store(double *to, const Lanes &lanes) { std::memcpy(to, &lanes, sizeof lanes); }
+
+  static double sum(const Lanes &lanes)
+  {
+    double total = 0;
+    for (int l = 0; l < LANES; ++l) total += lanes[l];
+    return total;
+  }
+
+  static bool any(const Mask &mask)
+  {
+    std::int64_t some = 0;
+    for (int l = 0; l < LANES; ++l) some |= mask[l];
+    return some != 0;
+  }
+
+  // Forces at the places where particles are; in a step, where they come to in this time, and their
+  // velocities after it. Whether one has become fast.
+  template <bool Moving>
+  bool evaluate(double time, const std::vector<Colloid<D>> &colloids,
+                std::vector<Push<D>> &on_colloids)
+  {
+    bool fast = false;
+    for (std::size_t c = 0; c < colloids.size(); ++c) {
+      check_allowance(colloids[c], near_.colloids()[c]);
+      auto &force = on_colloids[c].linear;
+      if (!Moving)
+        fast |= pass<false, false>(colloids[c], of_colloid_[c], spans_[c], time, force);
+      else if (bounce(spans_[c], time))
+        fast |= pass<false, true>(colloids[c], of_colloid_[c], spans_[c], time, force);
+      else
+        fast |= pass<true, true>(colloids[c], of_colloid_[c], spans_[c], time, force);
+    }
+    for (const auto &pair : others_) {
+      const auto &colloid = colloids[pair.colloid];
+      const auto &interaction = of_colloid_[pair.colloid];
+      Vector<D> separation;
+      for (int a = 0; a < D; ++a) separation[a] = x_[a][pair.particle] - colloid.x[a];
+      const double r2 = square<D>(separation);
+      if (!(r2 > square_of(CORE * interaction.sigma))) fault_in_core(pair.particle, colloid, r2);
+      const double strength = force_over_distance(interaction, r2);
+      for (int a = 0; a < D; ++a) {
+        acceleration_[a][pair.particle] += strength * separation[a];
+        if (Moving) v_[a][pair.particle] += 0.5 * time * (strength * separation[a]);
+        on_colloids[pair.colloid].linear[a] -= strength * separation[a];
+      }
+      if (Moving) fast |= is_fast(pair.particle);
+    }
+    return fast;
+  }
+
+  // The particles of a colloid in one pass over memory, by velocity Verlet; the force on the colloid.
+  // Flying: they have not flown yet.
+  template <bool Flying, bool Kicked>
+  bool pass(const Colloid<D> &colloid, const Interaction &interaction, const Span &span,
+            double time, Vector<D> &force)
+  {
+    const Lanes none{};
+    const double cut = square_of(cutoff(interaction.sigma)), core = square_of(CORE * interaction.sigma);
+    const double square_sigma = interaction.sigma * interaction.sigma;
+    const double usual = near_.usual();
+    const auto centre = colloid.x;
+    const auto field = field_;
+    std::array<Lanes, D> total{};
+    Mask deep{}, fast{};
+    for (int k = span.first; k < span.end; k += LANES) {
+      std::array<Lanes, D> v, before, separation;
+      Lanes r2 = none, speed = none;
+      for (int a = 0; a < D; ++a) {
+        Lanes x = load(&x_[a][k]);
+        if (Kicked) {
+          v[a] = load(&v_[a][k]);
+          before[a] = load(&acceleration_[a][k]);
+        }
+        if (Flying) {
+          x += time * (v[a] + 0.5 * time * before[a]);
+          v[a] += time * before[a];
+          store(&x_[a][k], x);
+        }
+        separation[a] = x - centre[a];
+        r2 += separation[a] * separation[a];
+      }
+      const Lanes inverse = 1 / r2;
+      const Lanes ratio = square_sigma * inverse;
+      const Lanes u = ratio * ratio * ratio;
+      Lanes strength = 24 * interaction.epsilon * (2 * u * u - u) * inverse;
+      strength = r2 < cut ? strength : none;
+      deep |= !(r2 > core);    // true for NaN
+      for (int a = 0; a < D; ++a) {
+        const Lanes pull = strength * separation[a], after = pull + field[a];
+        total[a] += pull;
+        if (Kicked) {
+          v[a] += 0.5 * time * (after - before[a]);    // flying has added the whole of the old one
+          speed += v[a] * v[a];
+          store(&v_[a][k], v[a]);
+        }
+        store(&acceleration_[a][k], after);
+      }
+      fast |= speed > usual;
+    }
+    if (any(deep)) find_in_core(colloid, interaction.sigma, span);
+    for (int a = 0; a < D; ++a) force[a] = -sum(total[a]);
+    return any(fast);
+  }
+
+  // Whether any of a colloid's particles meets a wall in the time; then they all have flown.
+  bool bounce(const Span &span, double time)
+  {
+    if (!walls_) return false;
+    int crossing = 0;
+    for (int axis : walls_->axes()) {
+      const double width = walls_->width(axis);
+      const double *x = x_[axis].data(), *v = v_[axis].data(), *a = acceleration_[axis].data();
+      for (int k = span.first; k < span.last; ++k) {
+        const double target = x[k] + time * (v[k] + 0.5 * time * a[k]);
+        crossing += (target < 0) | (target > width);
+      }
+    }
+    if (crossing == 0) return false;
+    std::array<double *, D> x, v;
+    PerParticle<D> acceleration;
+    for (int a = 0; a < D; ++a) {
+      x[a] = x_[a].data();
+      v[a] = v_[a].data();
+      acceleration.values[a] = acceleration_[a].data();
+    }
+    try {
+      stream<D>(x, v, acceleration, time, walls_, span.first, span.last);
+    } catch (const TooManyBounces &bounces) {
+      throw bounces.fault(static_cast<std::uint32_t>(ids_[bounces.index]));
+    }
+    return true;
+  }
+
+  bool is_fast(int k) const
+  {
+    double speed = 0;
+    for (int a = 0; a < D; ++a) speed += v_[a][k] * v_[a][k];
+    return near_.is_fast(speed);
+  }
+
   // Pair the particles that have become fast with all colloids.
   void pair_fast()
   {
-    const int count = static_cast<int>(taken_.size());
-    int fast = 0;
-    for (int k = 0; k < count; ++k) {
-      double speed = 0;
-      for (int a = 0; a < D; ++a) speed += v_[a][k] * v_[a][k];
-      fast += near_.is_fast(speed);
-    }
-    for (int k = 0; fast > 0 && k < count; ++k) {
-      double speed = 0;
-      for (int a = 0; a < D; ++a) speed += v_[a][k] * v_[a][k];
-      if (!near_.is_fast(speed)) continue;
-      --fast;
-      if (with_all_[k]) continue;
-      with_all_[k] = true;
-      std::vector<bool> has(near_.colloids().size());
-      for (const auto &pair : others_)
-        if (pair.particle == k) has[pair.colloid] = true;
-      for (int c = 0; c < static_cast<int>(near_.colloids().size()); ++c)
-        if (!has[c] && !(start_[c] <= k && k < start_[c + 1])) others_.push_back({k, c});
-    }
-  }
-
-  // Forces between a colloid and its own particles first ... last - 1; that on the colloid.
-  Vector<D> force_of(const Colloid<D> &colloid, const Interaction &interaction, int first, int last)
-  {
-    const auto of = interaction;    // copies: for all the compiler knows, the loop could write there
-    const auto centre = colloid.x;
-    const auto field = field_;
-    const double core = square_of(CORE * of.sigma);
-    int deep = 0;
-    std::array<double *, D> pull, after;
-    std::array<const double *, D> x;
-    for (int a = 0; a < D; ++a) {
-      pull[a] = pull_[a].data();
-      after[a] = new_[a].data();
-      x[a] = x_[a].data();
-    }
-#pragma GCC ivdep
-    for (int k = first; k < last; ++k) {
-      Vector<D> separation;
-      double r2 = 0;
-      for (int a = 0; a < D; ++a) {
-        separation[a] = x[a][k] - centre[a];
-        r2 += separation[a] * separation[a];
+    const int colloids = static_cast<int>(spans_.size());
+    for (int own = 0; own < colloids; ++own)
+      for (int k = spans_[own].first; k < spans_[own].last; ++k) {
+        if (with_all_[k] || !is_fast(k)) continue;
+        with_all_[k] = true;
+        std::vector<bool> has(colloids);
+        for (const auto &pair : others_)
+          if (pair.particle == k) has[pair.colloid] = true;
+        for (int c = 0; c < colloids; ++c)
+          if (c != own && !has[c]) others_.push_back({k, c});
       }
-      const double strength = force_over_distance(of, r2);
-      deep += !(r2 > core);    // true for NaN
-      for (int a = 0; a < D; ++a) {
-        pull[a][k] = strength * separation[a];
-        after[a][k] = strength * separation[a] + field[a];
-      }
-    }
-    if (deep > 0) find_in_core(colloid, of.sigma, first, last);
-
-    Vector<D> total;
-    for (int a = 0; a < D; ++a) {
-      double lane[LANES] = {};    // independent sums, for the processor's sake
-      int k = first;
-      for (; k + LANES <= last; k += LANES)
-        for (int l = 0; l < LANES; ++l) lane[l] += pull[a][k + l];
-      for (; k < last; ++k) lane[0] += pull[a][k];
-      total[a] = 0;
-      for (double sum : lane) total[a] -= sum;
-    }
-    return total;
   }
 
   void check_allowance(const Colloid<D> &now, const Colloid<D> &then) const
@@ -257,9 +332,9 @@ template <int D> class ForceCoupling : public Coupling<D> {
     throw Fault(text);
   }
 
-  void find_in_core(const Colloid<D> &colloid, double sigma, int first, int last) const
+  void find_in_core(const Colloid<D> &colloid, double sigma, const Span &span) const
   {
-    for (int k = first; k < last; ++k) {
+    for (int k = span.first; k < span.last; ++k) {
       double r2 = 0;
       for (int a = 0; a < D; ++a) r2 += square_of(x_[a][k] - colloid.x[a]);
       if (!(r2 > square_of(CORE * sigma))) fault_in_core(k, colloid, r2);
@@ -284,12 +359,13 @@ template <int D> class ForceCoupling : public Coupling<D> {
   const Walls<D> *walls_;
   std::vector<Interaction> of_colloid_;    // seen as the interval began
 
-  // taken particles, those of one colloid behind each other: colloid c has start_[c] ...
-  std::vector<int> start_, place_;
+  // what was taken, by places: those of one colloid behind each other
+  std::vector<Span> spans_;      // of each colloid
+  std::vector<int> place_;       // of each that was taken
   std::vector<double> ids_;
-  std::array<std::vector<double>, D> x_, v_, old_, new_, pull_;
+  std::array<Array<double>, D> x_, v_, acceleration_;
   std::vector<bool> with_all_;
-  std::vector<Pair> others_;    // pairs beside those of the order above
+  std::vector<Pair> others_;     // pairs beside those with the colloid of the place
 };
 
 }    // namespace mpc

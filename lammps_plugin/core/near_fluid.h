@@ -47,6 +47,7 @@ template <int D> class NearFluid {
 
   // Whether a particle is to be paired with all colloids.
   bool is_fast(double square_speed) const { return square_speed > usual_; }
+  double usual() const { return usual_; }    // the largest square of a speed that is not
 
   // Farthest that a colloid may move before the interval ends.
   double allowance() const { return allowance_; }
@@ -58,26 +59,40 @@ template <int D> class NearFluid {
     candidates_.clear();
     others_.clear();
     ranges_.clear();
+    cutoffs_.clear();
+    for (int a = 0; a < D; ++a) centres_[a].clear();
     cells_.begin(grid);
     for (int a = 0; a < D; ++a) turns_per_length_[a] = grid.periodic[a] ? 1 / grid.box[a] : 0.0;
     for (int c = 0; c < static_cast<int>(colloids.size()); ++c) {
       const double cutoff = cutoff_(colloids[c].type), pairing = reach(cutoff) + allowance_;
       ranges_.push_back({cutoff, square_of(pairing)});
+      cutoffs_.push_back(cutoff);
+      for (int a = 0; a < D; ++a) centres_[a].push_back(colloids[c].x[a]);
       cells_.enter(c, colloids[c].x, pairing);    // at all cells with what could be paired with it
     }
   }
 
   void take(const Fluid<D> &fluid, int begin, int end)
   {
+    if (colloids_.empty()) return;
     listed_.resize(end - begin);
-    int listed = 0;    // a list without branches: who is in it follows no pattern
+    int listed = 0;    // lists without branches: who is in them follows no pattern
     for (int i = begin; i < end; ++i) {
       double speed = 0;
       for (int a = 0; a < D; ++a) speed += fluid.v[a][i] * fluid.v[a][i];
       listed_[listed] = i;
       listed += cells_.any(fluid.cell[i]) | is_fast(speed);
     }
-    for (int k = 0; k < listed; ++k) consider(fluid, listed_[k]);
+    within_.resize(listed);
+    for (int k = 0; k < listed; ++k) within_[k] = within(fluid, listed_[k]);
+    for (int k = 0; k < listed; ++k) {
+      const int i = listed_[k], colloid = cells_.only(fluid.cell[i]);
+      if (!within_[k]) continue;
+      if (colloid < 0 || within_[k] == FAST)
+        consider(fluid, i);
+      else
+        candidates_.push_back({i, colloid, seen_from(fluid.particle(i), colloid)});
+    }
   }
 
   // What was taken, each with the nearest colloid; and all its other pairs, by the number of the
@@ -97,6 +112,32 @@ template <int D> class NearFluid {
   static double square_of(double a) { return a * a; }
 
   double flight_speed(double speed) const { return speed + gain_; }
+
+  // Whether a particle may come within the cutoff of the only colloid of its cell; else FAR_OFF. FAST,
+  // and NEAR where there are several, must be looked at more closely.
+  static constexpr char FAR_OFF = 0, NEAR = 1, FAST = 2;
+
+  char within(const Fluid<D> &fluid, int i) const
+  {
+    const int only = cells_.only(fluid.cell[i]), c = only < 0 ? 0 : only;
+    double r2 = 0, speed = 0;
+    for (int a = 0; a < D; ++a) {
+      const double separation = fluid.x[a][i] - centres_[a][c];
+      r2 += square_of(separation - turns(a, separation) * cells_.grid().box[a]);
+      speed += fluid.v[a][i] * fluid.v[a][i];
+    }
+    const double travel = allowance_ + interval_ * flight_speed(std::sqrt(speed));
+    const char near = (only < 0) | (r2 < square_of(cutoffs_[c] + travel)) ? NEAR : FAR_OFF;
+    return is_fast(speed) ? FAST : near;
+  }
+
+  // The image that is nearest to a colloid.
+  Particle<D> seen_from(Particle<D> particle, int colloid) const
+  {
+    for (int a = 0; a < D; ++a)
+      particle.x[a] -= turns(a, particle.x[a] - centres_[a][colloid]) * cells_.grid().box[a];
+    return particle;
+  }
 
   // Take a particle if it could come within a cutoff, and pair it. Its cell lists the images of
   // colloids that are near; a fast one meets all images, and so must itself be the one in its cell.
@@ -140,10 +181,7 @@ template <int D> class NearFluid {
       others_.resize(before);
       return;
     }
-    if (!fast)
-      for (int a = 0; a < D; ++a)
-        particle.x[a] -= turns(a, particle.x[a] - colloids_[nearest].x[a]) * grid.box[a];
-    candidates_.push_back({i, nearest, particle});
+    candidates_.push_back({i, nearest, fast ? particle : seen_from(particle, nearest)});
   }
 
   // Whole boxes in a separation.
@@ -167,9 +205,12 @@ template <int D> class NearFluid {
   ColloidCells<D> cells_;    // as the interval began
   std::vector<Colloid<D>> colloids_;
   std::vector<Range> ranges_;            // of each colloid
+  std::vector<double> cutoffs_;          // so that many are read at once
+  std::array<std::vector<double>, D> centres_;
   Vector<D> turns_per_length_;           // 0 across walls
   double allowance_ = 0;
   std::vector<int> listed_;
+  std::vector<char> within_;             // of those listed
   std::vector<Candidate> candidates_;
   std::vector<Pair> others_;
 };

@@ -462,11 +462,7 @@ void only_what_is_near_needs_integration()
   auto &coupling = *box.solver->coupling();
   const auto taken = coupling.taken().size();
   CHECK(taken > 20 && taken < particles.size() / 2);
-  for (int k = 0; k < 15; ++k) {
-    coupling.drift(step);
-    coupling.forces(colloids, forces);
-    coupling.kick(step);
-  }
+  for (int k = 0; k < 15; ++k) coupling.step(step, colloids, forces);
   Fluid<2> near = box.solver->fluid();
   coupling.give_back(near);
 
