@@ -1,10 +1,13 @@
 """How precisely a quantity is wanted, and how much longer a run must be to know it so.
 
 A run is looked at, made longer by what its error asks for, and looked at again, until every error
-is small enough. Looks are few, because each multiplies the time: a rule that looks often stops at
-the first error that happens to be too small. It stops only at errors that are known, `reason` None.
-The mean of a run that stops so is not biased to first order, because the error of a mean says
-nothing of its sign; `benchmarks/precision.py` measures what is left.
+is small enough. It stops only at errors that are known, `reason` None.
+
+A rule that looks often stops at the first error that happens to be too small; and where large
+values fluctuate more, at a value that happens to be small. So looks are few and far apart: the last
+one, too, is decided by the first half of the run or less. And an error of few degrees of freedom
+counts by its interval of 95 %, `Estimate.normal_error`. `benchmarks/precision.py` measures what is
+left of bias.
 """
 
 import math
@@ -15,7 +18,7 @@ from typing import Self
 from analysis.estimate import Estimate
 
 LEAST_GROWTH, MOST_GROWTH = 1.25, 2.5  # of the sampled time from one look to the next
-MARGIN = 1.1  # of the time that the error asks for, which is itself an estimate
+MARGIN = 1.2  # of the time that the error asks for, which is itself an estimate
 
 
 @dataclass(frozen=True)
@@ -59,23 +62,29 @@ class Precision:
         return f"{100 * self.error:.3g} %" if self.relative else f"{self.error:.3g}"
 
     def reached(self, estimate: Estimate) -> float:
-        """The error of an estimate in the same terms, infinite without a value or an error."""
+        """The normal error of an estimate in these terms, infinite without a value or an error."""
         if estimate.value is None or estimate.error is None:
             return math.inf
         if not self.relative:
-            return estimate.error
-        return estimate.error / abs(estimate.value) if estimate.value else math.inf
+            return estimate.normal_error
+        return estimate.normal_error / abs(estimate.value) if estimate.value else math.inf
 
     def is_met(self, estimate: Estimate) -> bool:
         """Whether the error is known, and small enough."""
         return estimate.reason is None and self.reached(estimate) <= self.error
 
     def growth(self, estimate: Estimate) -> float:
-        """By how much the sampled time should be multiplied before the next look; 1: enough."""
+        """By how much the sampled time should be multiplied before the next look; 1: enough.
+
+        Equal steps to the time that the error asks for, none longer than `MOST_GROWTH`.
+        """
         if self.is_met(estimate):
             return 1.0
         wanted = MARGIN * (self.reached(estimate) / self.error) ** 2
-        return min(max(wanted, LEAST_GROWTH), MOST_GROWTH)
+        if not math.isfinite(wanted):
+            return MOST_GROWTH
+        steps = max(1, math.ceil(math.log(wanted) / math.log(MOST_GROWTH))) if wanted > 1 else 1
+        return float(max(wanted ** (1 / steps), LEAST_GROWTH))
 
     def told(self, estimate: Estimate) -> str:
         """`settling_speed = 0.0319 +- 0.0012: 3.8 %, 2 % asked`."""

@@ -12,8 +12,6 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
-from scipy import stats
-
 from analysis import Estimate
 from analysis.analyze import analyze, estimates
 from analysis.precision import Precision
@@ -25,7 +23,6 @@ from narrows.until import precisions_of
 from srd_driver import RunError, Simulation
 from srd_driver.sweep import available_cores
 
-SAFE = 0.8  # chance that the error of the calibration is not above the one planned with
 FIRST_SAMPLES = 40  # sampling intervals of the first look of a calibration
 PATIENCE = 4  # times the calibration's time, for an error that is not known yet
 
@@ -45,18 +42,6 @@ class Calibration:
     pace: float
     sampled: float
     estimate: Estimate
-
-    @property
-    def safe_error(self) -> float:
-        """The error that the true one is below with the chance `SAFE`.
-
-        Raises:
-            ValueError: when there is none.
-        """
-        error, freedom = self.estimate.standard_error, self.estimate.freedom
-        if math.isinf(freedom):
-            return error
-        return error * math.sqrt(freedom / float(stats.chi2.ppf(1 - SAFE, freedom)))
 
 
 @dataclass(frozen=True)
@@ -118,7 +103,7 @@ def advise(
         scene = type(scene).make(**(scene.model_dump() | setting.fields))
     calibration = calibrate(scene, chosen, precision, calibration_seconds, report)
     error = _statistical(precision, calibration.estimate, setting)
-    sampled = calibration.sampled * (calibration.safe_error / error) ** 2
+    sampled = calibration.sampled * (calibration.estimate.normal_error / error) ** 2
     cores = cores or available_cores()
     repeats, duration = _shares(scene, sampled, calibration, cores)
     rounds = math.ceil(repeats / cores)

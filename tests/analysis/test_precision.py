@@ -57,8 +57,19 @@ def test_an_error_that_is_not_known_is_never_small_enough() -> None:
         assert TWO_PERCENT.growth(missing) == MOST_GROWTH
 
 
-def test_time_grows_as_the_square_of_the_error() -> None:
+def test_an_error_of_few_degrees_of_freedom_counts_by_its_interval() -> None:
+    """Student's t of 4 degrees of freedom: 2.776 at 95 %, against 1.960."""
+    few = Estimate(1.0, 0.015, None, freedom=4)
+    assert few.normal_error == pytest.approx(0.015 * 2.7764 / 1.95996, rel=1e-4)
+    assert not TWO_PERCENT.is_met(few)
+    assert TWO_PERCENT.is_met(Estimate(1.0, 0.014, None, freedom=4))
+    assert Estimate(1.0, 0.1).normal_error == pytest.approx(0.1)
+
+
+def test_time_grows_as_the_square_of_the_error_in_equal_steps() -> None:
     assert TWO_PERCENT.growth(Estimate(1.0, 0.028)) == pytest.approx(MARGIN * 1.96)
+    assert TWO_PERCENT.growth(Estimate(1.0, 0.04)) == pytest.approx(math.sqrt(MARGIN * 4))
+    assert TWO_PERCENT.growth(Estimate(1.0, 1e9)) <= MOST_GROWTH
 
 
 def test_the_quantity_that_needs_most_decides() -> None:

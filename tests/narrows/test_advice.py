@@ -7,9 +7,8 @@ from typing import Any
 import numpy as np
 import pytest
 
-from analysis import Estimate
 from lammps_inputs import SceneError, all_engines, make_scene
-from narrows.advice import Calibration, advise
+from narrows.advice import advise
 from narrows.chart import ChartedSetting, best, chart
 from narrows.until import run_until
 from srd_driver import RunError
@@ -57,12 +56,6 @@ def test_the_chart_is_of_scenes_and_engines_that_are() -> None:
     for entry in chart():
         scene = make_scene(entry.scene, **entry.fields)
         assert entry.error_after_10_s > 0, str(scene)
-
-
-def test_an_error_of_few_degrees_of_freedom_is_planned_larger() -> None:
-    few, many = (Calibration(1, 1, 1, Estimate(1.0, 0.1, None, nu)) for nu in (4, 400))
-    assert few.safe_error == pytest.approx(0.1 * math.sqrt(4 / 1.6488), rel=1e-3)  # chi2 at 20 %
-    assert 0.1 < many.safe_error < 0.104
 
 
 def test_advice_is_a_run_that_holds_it(tmp_path: Path) -> None:
