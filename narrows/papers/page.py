@@ -1,12 +1,13 @@
 """`index.html`: every figure beside the paper's numbers and the verdicts, in one file."""
 
-import base64
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
-from html import escape
+from html import escape, unescape
 from pathlib import Path
 
 from lammps_inputs import Scene
+from narrows import html
+from narrows.citations import PAPERS
 from narrows.papers.figure import Outcome, Paper, PaperFigure, Quality
 from narrows.papers.results import Result
 from run_files.writing import replace_text
@@ -48,32 +49,7 @@ class Report:
     versions: Mapping[str, str]
 
 
-STYLE = """
-:root { color-scheme: light; }
-body { font: 15px/1.45 system-ui, sans-serif; color: #1b1f24; background: #f5f6f8; margin: 0; }
-main { max-width: 1280px; margin: 0 auto; padding: 24px; }
-h1 { font-size: 24px; margin: 0 0 4px; }
-h2 { font-size: 18px; margin: 0; }
-.caption { margin: 2px 0 12px; color: #4a5360; }
-section { background: white; border: 1px solid #dfe3e8; border-radius: 8px; padding: 18px 20px;
-  margin: 18px 0; }
-.pair { display: grid; grid-template-columns: minmax(320px, 10fr) minmax(380px, 11fr); gap: 22px;
-  align-items: start; }
-.wide { grid-template-columns: 1fr; }
-@media (max-width: 900px) { .pair { grid-template-columns: 1fr; } }
-img { width: 100%; height: auto; }
-table { border-collapse: collapse; width: 100%; font-size: 13.5px; }
-th { text-align: left; font-weight: 600; border-bottom: 2px solid #c9d0d8; padding: 4px 8px; }
-td { border-bottom: 1px solid #e6e9ed; padding: 5px 8px; vertical-align: top; }
-td.number { white-space: nowrap; font-variant-numeric: tabular-nums; }
-.note { color: #5b6570; font-size: 12.5px; }
-td .none { white-space: nowrap; }
-.claim { color: #a50d26; }
-.verdict { font-weight: 600; white-space: nowrap; }
-.agrees { color: #17713a; } .disagrees { color: #b3261e; } .open { color: #8a6100; }
-nav a { margin-right: 10px; color: #1f5fa8; }
-.failed { color: #b3261e; }
-"""
+VERDICTS = ("agrees", "disagrees", "open")
 
 
 def write_page(path: Path, report: Report) -> None:
@@ -91,54 +67,83 @@ def verdict(result: Result) -> str:
 def count_verdicts(results: Sequence[Result]) -> dict[str, int]:
     """How many results have each verdict."""
     found = [verdict(result) for result in results]
-    return {name: found.count(name) for name in ("agrees", "disagrees", "open")}
+    return {name: found.count(name) for name in VERDICTS}
 
 
 def _page(report: Report) -> str:
-    results = [result for made in report.made for result in made.outcome.results]
-    counts = count_verdicts(results)
-    links = "".join(
-        f'<a href="#figure-{made.figure.number}">{made.figure.number}</a>' for made in report.made
-    )
     failed = "".join(f'<p class="failed">{escape(line)}</p>' for line in report.left_out)
     sections = "".join(_section(made) for made in report.made)
-    return f"""<!DOCTYPE html>
-<html lang="en"><head><meta charset="utf-8">
-<meta name="viewport" content="width=device-width, initial-scale=1">
-<title>{escape(report.paper.name)}, {report.quality}</title><style>{STYLE}</style></head>
-<body><main>
-<h1>{escape(report.paper.title)}</h1>
+    cite = PAPERS.get(report.paper.name, report.paper.title)
+    quick = "Larger errors leave more open: full quality may decide otherwise."
+    body = f"""<h1>{escape(report.paper.title)}</h1>
 <p class="caption">Computed again with narrows, {report.quality} quality.
+{quick if report.quality == "quick" else ""}
 The paper's numbers are red in every figure.</p>
-<p><span class="verdict agrees">{counts["agrees"]} agree</span>,
-<span class="verdict disagrees">{counts["disagrees"]} disagree</span>,
-<span class="verdict open">{counts["open"]} open</span>.
-A number agrees with a printed one if they differ by at most two joint standard errors plus one unit
-of the last printed digit. A claim without a number is put as a sign or as zero: it holds, or fails,
-at two standard errors, and is open where these do not decide. Errors are one standard error.</p>
-{failed}
-<nav>Figures {links}</nav>
+<section id="verdicts"><h2>Verdicts</h2>{_verdicts(report)}
+<p class="note">A number agrees with a printed one if they differ by at most two joint standard
+errors plus one unit of the last printed digit. A claim without a number is put as a sign or as
+zero: it holds, or fails, at two standard errors, and is open where these do not decide. Errors are
+one standard error.</p>
+{failed}</section>
 {sections}
-<section><h2>How it was made</h2>{_making(report)}</section>
-</main></body></html>
-"""
+<section><h2>How it was made</h2>{_making(report)}
+<p>The paper: {escape(cite)}.</p></section>"""
+    return html.page(f"{report.paper.name}, {report.quality}", body)
+
+
+def _verdicts(report: Report) -> str:
+    """A row for each figure, with a link to it, and one for all of them."""
+    everything = [result for made in report.made for result in made.outcome.results]
+    rows = [
+        (
+            f'<a href="#figure-{made.figure.number}">{made.figure.number}</a>',
+            escape(made.figure.caption),
+            *_counted(made.outcome.results),
+        )
+        for made in report.made
+    ]
+    together = (f"<b>{len(everything)} numbers</b>", "", *_counted(everything))
+    headings = ("figure", "what it shows", *VERDICTS, "nothing to compare")
+    return html.table(headings, [together, *rows])
+
+
+def _counted(results: Sequence[Result]) -> list[str]:
+    counts = count_verdicts(results)
+    cells = [f'<td class="verdict {name}">{counts[name] or ""}</td>' for name in VERDICTS]
+    return [*cells, f"<td>{len(results) - sum(counts.values()) or ''}</td>"]
 
 
 def _section(made: Made) -> str:
     number = made.figure.number
     width, height = made.outcome.picture.get_size_inches()
     shape = "pair wide" if width > 2 * height else "pair"
-    rows = "".join(_row(result) for result in made.outcome.results)
-    return f"""<section id="figure-{number}"><h2>Fig. {number}</h2>
+    rows = [_row(result) for result in made.outcome.results]
+    stem = f"figure-{number}"
+    return f"""<section id="{stem}"><h2>Fig. {number}</h2>
 <p class="caption">{escape(made.figure.caption)}</p>
-<div class="{shape}"><img alt="Fig. {number}" src="{_image(made.picture)}">
-<div><table><tr><th>quantity</th><th>here</th><th>paper</th><th></th></tr>{rows}</table>
-<p class="note">{escape(_origin(made))} Data: figure-{number}.csv, vector graphics:
-figure-{number}.pdf, beside this page.</p></div></div></section>
+<div class="{shape}">{html.picture(made.picture, _says(made))}
+<div>{html.table(("quantity", "here", "paper", ""), rows)}
+<p class="note">{escape(_origin(made))} Data: <a href="{stem}.csv">{stem}.csv</a>, vector graphics:
+<a href="{stem}.pdf">{stem}.pdf</a>, beside this page.</p></div></div></section>
 """
 
 
-def _row(result: Result) -> str:
+def _says(made: Made) -> str:
+    """What is to be seen, for those who do not see it: the caption, and each number."""
+    numbers = [
+        f"{result.quantity} {_plain(result)}"
+        + (f", in the paper {result.paper.value:.4g}" if result.paper else "")
+        for result in made.outcome.results
+    ]
+    return f"Fig. {made.figure.number}: {made.figure.caption} " + "; ".join(numbers)
+
+
+def _plain(result: Result) -> str:
+    measured = result.measured
+    return unescape(html.measured(measured.value, measured.error))
+
+
+def _row(result: Result) -> tuple[str, ...]:
     entry = result.as_json()
     note = f'<div class="note">{escape(entry["note"])}</div>' if entry["note"] else ""
     words = verdict(result)
@@ -149,24 +154,11 @@ def _row(result: Result) -> str:
     else:
         paper = '<span class="note none">no number</span>'
     return (
-        f"<tr><td>{escape(result.quantity)}{note}</td>"
-        f'<td class="number">{_number(entry["value"], entry["error"])}</td><td>{paper}</td>'
-        f'<td class="verdict {words}">{words}</td></tr>'
+        f"{escape(result.quantity)}{note}",
+        html.number(entry["value"], entry["error"]),
+        paper,
+        f'<td class="verdict {words}">{words}</td>',
     )
-
-
-def _number(value: float | None, error: float | None) -> str:
-    """The value to the second digit of its error."""
-    if value is None:
-        return "-"
-    if not error:
-        return f"{value:.5g}"
-    digits = max(0, 1 - int(f"{error:e}".split("e")[1]))
-    return f"{value:.{digits}f} &plusmn; {error:.{digits}f}"
-
-
-def _image(picture: Path) -> str:
-    return "data:image/png;base64," + base64.b64encode(picture.read_bytes()).decode()
 
 
 def _origin(made: Made) -> str:
@@ -192,7 +184,4 @@ def _making(report: Report) -> str:
         "versions": versions,
         "units": report.paper.units,
     }
-    body = "".join(
-        f"<tr><td>{name}</td><td>{escape(text)}</td></tr>" for name, text in rows.items()
-    )
-    return f"<table>{body}</table>"
+    return html.table((), [(name, escape(text)) for name, text in rows.items()])

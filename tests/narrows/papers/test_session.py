@@ -48,10 +48,16 @@ def test_figures_data_results_and_page(tmp_path: Path) -> None:
     page = (plan.out / "index.html").read_text()
     sources = re.findall(r'(?:src|href)="([^"]*)"', page)
     assert len([s for s in sources if s.startswith("data:image/png;base64,")]) == 2
-    assert all(s.startswith(("data:", "#")) for s in sources)
+    beside = {source for source in sources if not source.startswith(("data:", "#"))}
+    assert beside == {f"figure-{n}.{kind}" for n in (1, 2) for kind in ("csv", "pdf")}
+    assert all((plan.out / name).is_file() for name in beside)
+    assert page.index('id="verdicts"') < page.index('id="figure-1"')
+    assert "<b>2 numbers</b></td><td></td>" in page
+    assert '<td class="verdict agrees">2</td>' in page
+    assert 'alt="Fig. 1: Where it is &amp; was. place &lt;of&gt; seed 1' in page
+    assert "prefers-color-scheme: dark" in page
     assert not re.search(r"https?://|@import|url\(|<script", page)
     assert "A &lt;tiny&gt; paper" in page
-    assert "2 agree" in page
     assert "3 by the engine mpc" in page
     assert "those of a &lt;tiny&gt; world" in page
 
