@@ -96,6 +96,20 @@ def test_colloids_settle_and_a_restart_goes_on_to_the_last_bit(
     assert not np.array_equal(start, end)
 
 
+def test_the_fluid_flows_along_with_a_colloid(tmp_path: Path, command: Run) -> None:
+    """None is inside, and before and behind it the fluid is faster than half a box away."""
+    run_deck("in.flow", tmp_path, command)
+    rows = [line.split() for line in (tmp_path / "flow.dat").read_text().splitlines()]
+    bins = np.array([row for row in rows if len(row) == 8 and row[0] != "#"], dtype=float)
+    _, x, y, count, _, vx, *_ = bins.reshape(-1, 80 * 20, 8)[1:].transpose(2, 0, 1)
+    from_middle = x**2 + (y - 5) ** 2
+    assert count[from_middle < 1].max() < 0.1
+    near = (np.abs(x) < 4) & (np.abs(y - 5) < 2) & (count > 0.5)
+    far = np.abs(x) > 14
+    speeds = [np.average(vx[where], weights=count[where]) for where in (near, far)]
+    assert speeds[0] > 2 * speeds[1]
+
+
 def test_the_page_of_the_style_names_every_deck_first() -> None:
     page = (ROOT / "docs" / "fix_mpc.md").read_text(encoding="utf-8")
     before, _, _ = page.partition("## Syntax")

@@ -1,0 +1,48 @@
+"""A wheel with two builds of the plugin: LAMMPS gets the one that the processor can run."""
+
+from pathlib import Path, PurePosixPath
+from typing import Any
+
+import pytest
+
+import lammps_plugin
+
+NEW = "processor : 0\nflags : fpu abm avx avx2 bmi1 bmi2 f16c fma movbe sse4_2\n"
+OLD = "processor : 0\nflags : fpu avx sse4_2\n"
+
+
+class Installed(PurePosixPath):
+    """A file as the metadata of a distribution have it."""
+
+    def locate(self) -> Path:
+        return Path(self)
+
+
+@pytest.mark.parametrize(
+    ("processors", "folders", "chosen"),
+    [
+        (NEW, ["x86-64-v2", "x86-64-v3"], "x86-64-v3"),
+        (OLD, ["x86-64-v2", "x86-64-v3"], "x86-64-v2"),
+        (NEW + OLD, ["x86-64-v2", "x86-64-v3"], "x86-64-v2"),
+        (OLD, ["lammps_plugin"], "lammps_plugin"),
+        (NEW, [], None),
+    ],
+)
+def test_the_processor_decides(
+    processors: str,
+    folders: list[str],
+    chosen: str | None,
+    tmp_path: Path,
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    for name in folders:
+        (tmp_path / name).mkdir()
+        (tmp_path / name / "narrowsplugin.so").touch()
+    built: list[Any] = [Installed(tmp_path / name / "narrowsplugin.so") for name in folders]
+    monkeypatch.setattr(lammps_plugin, "files", lambda name: built)
+    monkeypatch.setattr(Path, "read_text", lambda path, encoding: processors)
+    assert lammps_plugin.folder() == (str(tmp_path / chosen) if chosen else "")
+
+
+def test_where_no_processor_is_told_of_the_older_build_is_taken() -> None:
+    assert not lammps_plugin.runs_wide("")
