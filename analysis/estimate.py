@@ -67,6 +67,17 @@ class Estimate:
             raise ValueError(f"confidence = {confidence!r}: must be between 0 and 1")
         return self.standard_error * float(stats.t.ppf((1 + confidence) / 2, self.freedom))
 
+    @property
+    def normal_error(self) -> float:
+        """The standard error of a normal distribution whose 95 % interval is as wide.
+
+        With few degrees of freedom it is larger than the standard error.
+
+        Raises:
+            ValueError: when there is no error.
+        """
+        return self.half_width() / float(stats.norm.ppf(0.975))
+
     def interval(self, confidence: float = 0.95) -> tuple[float, float]:
         """Where the truth lies with this probability, low and high; as `half_width`."""
         half = self.half_width(confidence)

@@ -60,7 +60,9 @@ def draw(series: SettlingSeries, equilibration: float, mean: Estimate) -> Figure
     """
     times, used = series.times, series.times > equilibration
     figure, axes = one_panel(TIME, "settling speed $v_s$ [$a_0/t_0$]")
-    axes.plot(times, series.co_moving, color="0.88", linewidth=0.5, label="co-moving, each interval")
+    axes.plot(
+        times, series.co_moving, color="0.88", linewidth=0.5, label="co-moving, each interval"
+    )
     count = np.arange(1, used.sum() + 1)
     shown = [0.0]  # what the scale has to show
     for speed, name, colour in (
