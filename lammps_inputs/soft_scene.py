@@ -1,4 +1,4 @@
-"""What scenes of soft particles without a solvent have in common (delhommelle-2005, II).
+"""What scenes of soft particles have in common (delhommelle-2005, II).
 
 Units are those of the pair potential: its sigma, its epsilon and the mass of a particle are 1.
 """
@@ -24,8 +24,6 @@ LOOKS = 20  # of the averages in a sampling interval, at least where it has so m
 LOOK_STEPS = 100
 FLIGHT = 0.15  # of a particle in a step, half the skin of the neighbour lists [sigma]
 FASTEST = 5.0  # thermal speeds that a particle must be able to have
-
-Thermostat = Literal["kinetic", "kinetic_x", "kinetic_y", "configurational", "langevin", "dpd"]
 
 
 class SoftScene(Scene):

@@ -377,6 +377,8 @@ class Solvent:
         coupling: how it meets species: by the force of their interaction with the `FLUID`; or all
             of them reflect it at their radius; or take part in the collision of their cell.
         drift_interval: collisions between removals of the total momentum; 0: never.
+        cell: edge of a collision cell [a0].
+        temperature: [kBT].
     """
 
     particles: int
@@ -389,6 +391,8 @@ class Solvent:
     shear_wave: float = 0.0
     coupling: Coupling = "force"
     drift_interval: int = 0
+    cell: float = 1.0
+    temperature: float = 1.0
 
 
 class Placement(Protocol):
