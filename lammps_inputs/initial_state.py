@@ -15,7 +15,8 @@ class InitialState:
     """Positions [a0] and velocities [a0/t0].
 
     Fluid (N_f, d); colloids, which are the particles of all species in their order, (N_c, d); the
-    angular velocities, zero of those that do not rotate, (N_c, 3) [1/t0].
+    angular velocities, zero of those that do not rotate, (N_c, 3) [1/t0]. `tilt` is how far along x
+    the image above a sheared box is ahead [a0].
     """
 
     fluid_positions: Array
@@ -23,6 +24,7 @@ class InitialState:
     colloid_positions: Array
     colloid_velocities: Array
     colloid_spins: Array = field(default_factory=lambda: np.empty((0, 3)))
+    tilt: float = 0.0
 
 
 def initial_state(system: System, seed: int) -> InitialState:
@@ -41,8 +43,10 @@ def initial_state(system: System, seed: int) -> InitialState:
     if system.placement:
         colloid_positions = system.placement.positions(system.box, system.species, seed)
     colloid_velocities = random.normal(size=(system.particles, dimensions)) / np.sqrt(masses)
+    tilt = 0.0
     if isinstance(system.placement, Continuation):
         colloid_velocities = system.placement.velocities(system.box, system.species)
+        tilt = system.placement.tilt(system.box, system.species)
 
     fluid = system.solvent
     room = np.zeros_like(system.radii) if fluid and fluid.coupling == "cell" else system.radii
@@ -69,6 +73,7 @@ def initial_state(system: System, seed: int) -> InitialState:
         colloid_positions,
         colloid_velocities - drift,
         _spins(system, random),
+        tilt,
     )
 
 

@@ -407,7 +407,10 @@ class Continuation(Placement, Protocol):
     """A placement with velocities, as another run left the particles."""
 
     def velocities(self, box: Box, species: tuple[Species, ...]) -> Array:
-        """Velocities of all species, one after the other, (N, d) [a0/t0]."""
+        """Velocities of all species relative to a shear flow, in order, (N, d) [a0/t0]."""
+
+    def tilt(self, box: Box, species: tuple[Species, ...]) -> float:
+        """How far along x the image above a sheared box is ahead [a0]."""
 
     def problems(self, box: Box, species: tuple[Species, ...]) -> Iterator[str]:
         """Why that run cannot be gone on from, in one line."""

@@ -75,10 +75,8 @@ def test_a_killed_sheared_run_goes_on_to_the_last_bit(
     whole, again = finish(scene, tmp_path / "whole"), killed_and_resumed(scene, tmp_path / "killed")
     for output in scene.system.outputs:
         assert rows(whole, output.file) == rows(again, output.file), output.file
-    run, rate = RunDirectory(again), scene.system.shear_rate
-    heights = run.particles().positions[4:, :, 1] % run.width
-    flow = np.polyfit(heights.ravel(), run.particles().velocities[4:, :, 0].ravel(), 1)
-    assert flow[0] == pytest.approx(rate, rel=0.1)
+    flow = np.polyfit(*_heights_and_speeds(again), 1)
+    assert flow[0] == pytest.approx(scene.system.shear_rate, rel=0.1)
     summary = analyze(again)
     assert summary["shear_viscosity"]["value"] > 0
     assert {"configurational_temperature", "pressure", "kinetic_temperature"} <= summary.keys()
@@ -122,6 +120,44 @@ def test_a_ladder_of_fields(tmp_path: Path) -> None:
     np.testing.assert_allclose(moved - lengths * np.round(moved / lengths), 0, atol=1e-5)
     np.testing.assert_allclose(after.velocities[0], before.velocities[-1], atol=1e-6)
     assert (after.species == before.species).all()
+
+
+@pytest.mark.parametrize("thermostat", ["kinetic", "configurational"])
+def test_a_ladder_of_rates(thermostat: str, tmp_path: Path) -> None:
+    """The box goes on as tilted as it was, and only the flow is another."""
+    first = finish(
+        shear(thermostat=thermostat, duration=1.0, sampling_interval=0.3), tmp_path / "1"
+    )
+    scene = shear(thermostat=thermostat, rate=2.5, start=str(first), duration=1.0)
+    second = finish(scene, tmp_path / "2")
+    before, after = RunDirectory(first).particles(), RunDirectory(second).particles()
+    ended, begun = (_bounds(folder, last) for folder, last in ((first, -1), (second, 0)))
+    assert abs(ended[0][2]) > 0.5
+    np.testing.assert_allclose(begun, ended, rtol=1e-6)
+    lengths = np.array(scene.system.box.sizes)
+    old, new = before.positions[-1] % lengths, after.positions[0] % lengths
+    inside = np.abs(new - old)[:, 1] < lengths[1] / 2  # others are on the other side of y = 0 now
+    moved = (new - old)[inside]
+    np.testing.assert_allclose(moved - lengths * np.round(moved / lengths), 0, atol=1e-5)
+    assert inside.mean() > 0.95
+    own = before.velocities[-1, :, 0] - 1.5 * old[:, 1]
+    there = after.velocities[0, :, 0] - 2.5 * new[:, 1]
+    np.testing.assert_allclose(there[inside], own[inside], atol=1e-4)
+    flow = np.polyfit(*_heights_and_speeds(second), 1)
+    assert flow[0] == pytest.approx(2.5, abs=0.2)
+
+
+def _bounds(folder: Path, frame: int) -> list[list[float]]:
+    """Of a frame's box, along x and y."""
+    frames = (folder / "trajectory.lammpsdump").read_text().split("ITEM: TIMESTEP")[1:]
+    lines = frames[frame].splitlines()[5:7]
+    return [[float(word) for word in line.split()] for line in lines]
+
+
+def _heights_and_speeds(folder: Path) -> tuple[np.ndarray, np.ndarray]:
+    run = RunDirectory(folder)
+    particles = run.particles()
+    return (particles.positions[:, :, 1] % run.width).ravel(), particles.velocities[:, :, 0].ravel()
 
 
 def test_at_rest_there_is_no_field(tmp_path: Path) -> None:
@@ -179,7 +215,6 @@ BAD: list[tuple[str, dict[str, Any], str]] = [
     ("shear", {"rate": 60, "time_step": 0.002}, "time_step = 0.002: too long for a rate of 60"),
     ("shear", {"thermostat": "kinetic_x"}, "thermostat = 'kinetic_x': should be 'kinetic' or"),
     ("shear", {"thermostat": "configurational", "rest": 0}, "rest = 0.0: .* runs away"),
-    ("shear", {"start": "there"}, "start = 'there': should be 'crystal' or 'random'"),
     ("shear", {"field": 1}, "field = 1: unknown field; shear has"),
 ]
 

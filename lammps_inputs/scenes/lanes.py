@@ -2,13 +2,11 @@
 
 import math
 from collections.abc import Iterator
-from pathlib import Path
 from typing import Annotated, Any, ClassVar, Literal
 
 from pydantic import Field, model_validator
 
 from lammps_inputs.limits import SOUND, solvent_warnings
-from lammps_inputs.placement import LastFrame
 from lammps_inputs.scene import Positive
 from lammps_inputs.soft_scene import SoftScene
 from lammps_inputs.system import (
@@ -26,8 +24,6 @@ from lammps_inputs.system import (
     Langevin,
     Motion,
     Output,
-    Placement,
-    Rest,
     Solvent,
     Species,
     System,
@@ -35,7 +31,6 @@ from lammps_inputs.system import (
 )
 from lammps_inputs.viscosity import mobility_in_cells, solvent_viscosity
 
-STARTS = ("crystal", "random")
 TURN = 0.25  # of the velocities by the field in half a step, at most
 KICK = 0.005  # of the field in a step, from which on a configurational run is likely to stop
 LARGEST_SEED = 900_000_000  # of LAMMPS's noise
@@ -69,10 +64,6 @@ class Lanes(SoftScene):
     )
     friction: Positive = Field(default=1.0, description="of langevin and dpd [1/t0]")
     dpd_cutoff: Positive = Field(default=1.5, description="range of the dpd friction [sigma]")
-    start: str = Field(
-        default="crystal",
-        description="crystal, random, or the directory of a run that has gone before",
-    )
     solvent: Literal["none", "mpc"] = Field(
         default="none", description="none, or mpc: an MPC fluid in a box of equal edges"
     )
@@ -154,14 +145,6 @@ class Lanes(SoftScene):
             case "solvent":
                 return VelocityVerlet()
 
-    def placement(self, start: str) -> Placement:
-        if start in STARTS:
-            return super().placement(start)
-        return LastFrame(str(Path(start) / TRAJECTORY.file))
-
-    def resting(self) -> Rest | None:
-        return super().resting() if self.start in STARTS else None
-
     def build(self) -> System:
         half = self.number // 2
         pairs = (("plus", "plus"), ("plus", "minus"), ("minus", "minus"))
@@ -178,7 +161,7 @@ class Lanes(SoftScene):
             box=self.box(),
             clock=self.clock(),
             species=tuple(Species(name, half, self.mass, 0.5) for name in ("plus", "minus")),
-            placement=self.placement(self.start),
+            placement=self.placement(),
             interactions=tuple(Interaction(*pair, self.potential) for pair in pairs),
             drives=(
                 Drive("plus", self.field / self.mass, (1, 0, 0), variable="field"),
@@ -225,7 +208,7 @@ class Lanes(SoftScene):
                 f"turns the velocities by {turn:.2g} in half a step; must be at most "
                 f"{self.time_step * TURN / turn:.2g}"
             )
-        if self.thermostat == "configurational" and self.start in STARTS and not self.resting():
+        if self.thermostat == "configurational" and self.begins_anew and not self.resting():
             yield (
                 f"rest = {self.rest!r}: the configurational thermostat runs away from a lattice; "
                 "let it melt at rest first, for about 20"
