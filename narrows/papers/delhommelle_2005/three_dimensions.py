@@ -11,6 +11,7 @@ from analysis.run_directory import RunDirectory
 from lammps_inputs import Scene
 from narrows.papers.delhommelle_2005.state_points import (
     THERMOSTATS,
+    ladders_of,
     largest,
     numbers,
     sheared,
@@ -221,3 +222,15 @@ FIGURES = (
         lambda quality: [sheared(rate, "kinetic", quality) for rate in STRINGS],
     ),
 )
+
+
+def ladders(quality: Quality) -> list[list[Scene]]:
+    """Of rates; at full quality of fields too."""
+    sheared_scenes = [
+        scene for each in _flow_curve(quality).values() for scene in each.values()
+    ] + [sheared(rate, "kinetic", quality) for rate in STRINGS]
+    driven = [scene for each in _driven(quality).values() for scene in each.values()]
+    return [
+        *ladders_of(sheared_scenes, "rate"),
+        *(ladders_of(driven, "field") if quality == "full" else []),
+    ]
