@@ -208,8 +208,13 @@ def _group(system: System) -> str:
 
 
 def _lists(system: System, travel: float) -> int:
-    """How often in a collision interval lists are built, for a skin that is not too long."""
+    """How often in a collision interval lists are built, for a skin that is not too long.
+
+    Once where the fluid sees species between collisions.
+    """
     steps = system.clock.steps_per_collision
+    if _fluid(system).coupling != "cell":
+        return 1
     divisors = (number for number in range(1, steps + 1) if steps % number == 0)
     return next((number for number in divisors if travel / number <= LONGEST_SKIN), steps)
 

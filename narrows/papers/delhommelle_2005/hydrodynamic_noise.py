@@ -50,8 +50,8 @@ def noisy(
         solvent="mpc",
         hydrodynamics=noise,
         sampling_interval=5.0,
-        equilibration=300.0 if quick else 1000.0,
-        duration=700.0 if quick else 2000.0,
+        equilibration=1000.0 if quick else 2000.0,
+        duration=500.0 if quick else 2000.0,
     )
 
 
