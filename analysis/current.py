@@ -21,6 +21,21 @@ def current(velocities: Array, signs: ArrayLike) -> Array:
     return np.asarray((velocities * np.asarray(signs)).mean(axis=1))
 
 
+def displacement_current(positions: Array, signs: ArrayLike, times: ArrayLike) -> Array:
+    """The current over each interval, by how far particles have come: kicks between do not matter.
+
+    Args:
+        positions: along the field, not wrapped, (T, N).
+        signs: as of `current`, (N,).
+        times: (T,).
+
+    Returns:
+        (T - 1,).
+    """
+    separation = (positions * np.asarray(signs)).mean(axis=1)
+    return np.asarray(np.diff(separation) / np.diff(np.asarray(times)))
+
+
 def mobility(current_series: ArrayLike, field: float) -> Estimate:
     """Mean current over the force on each particle.
 

@@ -3,6 +3,9 @@
 phi is the fraction of particles of which every particle of the other colour is further than a
 spacing n^(-1/D), the distance measured along certain axes. The paper prints the axis of the field,
 x; lanes along the field are told apart by the distance across it.
+
+phi is 0 until a lane is pure over the length of the box. How far the colours have parted before is
+told by the structure factor of the colour, of waves across the field.
 """
 
 import numpy as np
@@ -10,6 +13,8 @@ from numpy.typing import ArrayLike
 
 from analysis.arrays import Array
 from analysis.periodic import nearest_distance
+
+WAVES = 4  # along each axis across the field, the longest
 
 
 def lane_order(positions: Array, colours: ArrayLike, lengths: ArrayLike) -> Array:
@@ -36,6 +41,23 @@ def lane_order_printed(positions: Array, colours: ArrayLike, lengths: ArrayLike)
     Arguments as of `lane_order`. It is 1 for bands across the field.
     """
     return _order(positions, colours, lengths, [0])
+
+
+def colour_structure(positions: Array, colours: ArrayLike, lengths: ArrayLike) -> Array:
+    """Largest S_c(k) = |sum_j eps_j exp(i k r_j)|^2 / N of the longest waves across the field.
+
+    About 2 when mixed at random, 4 N / pi^2 for two lanes of equal width. Arguments as of
+    `lane_order`.
+    """
+    colours, lengths = np.asarray(colours), np.asarray(lengths, dtype=float)
+    signs = np.where(colours == np.unique(colours)[0], 1.0, -1.0)
+    largest = np.zeros(len(positions))
+    for axis in range(1, positions.shape[2]):
+        phases = np.exp(2j * np.pi * positions[:, :, axis] / lengths[axis])
+        for wave in range(1, WAVES + 1):
+            squares = np.abs(phases**wave @ signs) ** 2 / len(signs)
+            largest = np.maximum(largest, squares)
+    return largest
 
 
 def _order(positions: Array, colours: ArrayLike, lengths: ArrayLike, axes: list[int]) -> Array:

@@ -92,7 +92,8 @@ def _lines(scene: Scene, engine: LammpsEngine, start: Start) -> Iterator[str]:
         if output.kind == "trajectory":
             yield from trajectory(output, system, start)
     yield ""
-    yield "run ${steps} upto"
+    renewal = " ".join(f'"{command}"' for command in engine.renewal(system))
+    yield "run ${steps} upto" + (f" post no every ${{sample}} {renewal}" if renewal else "")
 
 
 def _title(scene: Scene) -> Iterator[str]:
@@ -101,8 +102,10 @@ def _title(scene: Scene) -> Iterator[str]:
     yield f"# {scene.name}: {about}"
     yield "# run:     lmp -in in.lammps      or   mpirun -np 2 lmp -in in.lammps"
     yield f"# change:  lmp -in in.lammps -var {change}"
-    fluid = "collision cell a0 = kBT = fluid particle mass m_f = 1"
-    yield f"# units:   {fluid if scene.system.solvent else 'a0 = kBT = m_f = 1'}"
+    solvent = scene.system.solvent
+    cell = "collision cell a0" if not solvent or solvent.cell == 1 else "a0"
+    fluid = f"{cell} = kBT = fluid particle mass m_f = 1"
+    yield f"# units:   {fluid if solvent else 'a0 = kBT = m_f = 1'}"
     yield ""
 
 

@@ -1,5 +1,6 @@
 """The state every engine starts from (tabatabaei-2009, 3.4.4)."""
 
+import math
 from dataclasses import dataclass, field
 
 import numpy as np
@@ -14,7 +15,8 @@ class InitialState:
     """Positions [a0] and velocities [a0/t0].
 
     Fluid (N_f, d); colloids, which are the particles of all species in their order, (N_c, d); the
-    angular velocities, zero of those that do not rotate, (N_c, 3) [1/t0].
+    angular velocities, zero of those that do not rotate, (N_c, 3) [1/t0]. `tilt` is how far along x
+    the image above a sheared box is ahead [a0].
     """
 
     fluid_positions: Array
@@ -22,15 +24,17 @@ class InitialState:
     colloid_positions: Array
     colloid_velocities: Array
     colloid_spins: Array = field(default_factory=lambda: np.empty((0, 3)))
+    tilt: float = 0.0
 
 
 def initial_state(system: System, seed: int) -> InitialState:
     """Particles at their places, fluid uniform in the space they leave, Maxwell velocities.
 
     No fluid particle lies within the radius of a particle's centre, but where species are particles
-    of their cell. The total momentum is made zero
-    by one velocity subtracted from all; the temperature is kBT = 1 on average. A shear wave of the
-    solvent is added last, its mean taken off. A function of system and seed alone.
+    of their cell. The total momentum is made zero by one velocity subtracted from all, or from
+    fluid and species by themselves where these rest first; the temperature is kBT = 1 on average,
+    of the fluid that of the solvent. A shear wave of the solvent is added last, its mean taken off.
+    A function of system and seed alone.
     """
     random = np.random.Generator(np.random.Philox(key=[seed, INITIAL_STREAM]))
     dimensions = system.box.dimensions
@@ -39,8 +43,10 @@ def initial_state(system: System, seed: int) -> InitialState:
     if system.placement:
         colloid_positions = system.placement.positions(system.box, system.species, seed)
     colloid_velocities = random.normal(size=(system.particles, dimensions)) / np.sqrt(masses)
+    tilt = 0.0
     if isinstance(system.placement, Continuation):
         colloid_velocities = system.placement.velocities(system.box, system.species)
+        tilt = system.placement.tilt(system.box, system.species)
 
     fluid = system.solvent
     room = np.zeros_like(system.radii) if fluid and fluid.coupling == "cell" else system.radii
@@ -48,16 +54,15 @@ def initial_state(system: System, seed: int) -> InitialState:
         colloid_positions, room, system.box, fluid.particles if fluid else 0, random
     )
     fluid_velocities = random.normal(size=fluid_positions.shape)
-    momentum = fluid_velocities.sum(axis=0)
-    mass: float = len(fluid_velocities)
-    first = 0
-    for species in system.species:
-        own = colloid_velocities[first : first + species.count]
-        momentum = momentum + species.mass * own.sum(axis=0)
-        mass += species.mass * species.count
-        first += species.count
-    drift = momentum / mass
-    fluid_velocities -= drift
+    if fluid:
+        fluid_velocities *= math.sqrt(fluid.temperature)
+    momentum, mass = fluid_velocities.sum(axis=0), len(fluid_velocities)
+    of_species, heavy = _momentum(system, colloid_velocities)
+    if system.rest:
+        drift, fluid_drift = of_species / heavy, momentum / max(1, mass)
+    else:
+        drift = fluid_drift = (momentum + of_species) / (mass + heavy)
+    fluid_velocities -= fluid_drift
     if fluid and fluid.shear_wave:
         y = fluid_positions[:, 1]
         wave = fluid.shear_wave * np.sin(2 * np.pi * y / system.box.sizes[1])
@@ -68,7 +73,19 @@ def initial_state(system: System, seed: int) -> InitialState:
         colloid_positions,
         colloid_velocities - drift,
         _spins(system, random),
+        tilt,
     )
+
+
+def _momentum(system: System, velocities: Array) -> tuple[Array, float]:
+    """Of all species, (d,) [m_f a0/t0], and their mass [m_f]."""
+    momentum, mass, first = np.zeros(system.box.dimensions), 0.0, 0
+    for species in system.species:
+        own = velocities[first : first + species.count]
+        momentum = momentum + species.mass * own.sum(axis=0)
+        mass += species.mass * species.count
+        first += species.count
+    return momentum, mass
 
 
 def _spins(system: System, random: np.random.Generator) -> Array:

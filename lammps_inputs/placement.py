@@ -1,5 +1,6 @@
 """Where particles are at the start."""
 
+import json
 import math
 from collections.abc import Iterator
 from dataclasses import dataclass
@@ -11,6 +12,7 @@ from lammps_inputs.system import Array, Box, Species
 
 PLACEMENT_STREAM = 91  # Philox key of random placements
 LONGEST_ROW = 300  # bytes of a dump's row
+MANIFEST = "manifest.json"  # of the run that one begins from
 
 
 @dataclass(frozen=True)
@@ -113,16 +115,23 @@ class LastFrame:
         return self._columns(box, species)[:, 0:3][:, : box.dimensions]
 
     def velocities(self, box: Box, species: tuple[Species, ...]) -> Array:
-        """Velocities (N, d) [a0/t0]."""
-        return self._columns(box, species)[:, 3:6][:, : box.dimensions]
+        """Velocities (N, d) relative to the flow where that run was sheared [a0/t0]."""
+        columns = self._columns(box, species)
+        velocities = columns[:, 3:6][:, : box.dimensions].copy()
+        velocities[:, 0] -= self._shear_rate() * columns[:, 1]
+        return velocities
+
+    def tilt(self, box: Box, species: tuple[Species, ...]) -> float:
+        """How far along x the image above the box was ahead [a0]."""
+        return _tilt(self._last_frame(species))
 
     def problems(self, box: Box, species: tuple[Species, ...]) -> Iterator[str]:
         """Why it cannot be started from, in one line."""
         try:
-            self._columns(box, species)
+            self.velocities(box, species)
         except OSError as error:
-            yield f"{self.trajectory}: {error.strerror or error}"
-        except (ValueError, IndexError) as error:
+            yield f"{error.filename or self.trajectory}: {error.strerror or error}"
+        except (ValueError, IndexError, LookupError, AttributeError, TypeError) as error:
             yield f"{self.trajectory}: {error}"
 
     def _columns(self, box: Box, species: tuple[Species, ...]) -> Array:
@@ -132,17 +141,10 @@ class LastFrame:
             OSError: when there is no such file.
             ValueError: when its frames are of other particles or another box.
         """
-        count = sum(each.count for each in species)
-        with Path(self.trajectory).open("rb") as file:
-            file.seek(0, 2)
-            file.seek(max(0, file.tell() - 2 * LONGEST_ROW * (count + 9)))
-            frames = file.read().decode(errors="replace").split("ITEM: TIMESTEP\n")[1:]
-        rows = [frame.splitlines() for frame in frames if frame.endswith("\n")]
-        whole = [lines for lines in rows if len(lines) == count + 8]
-        if not whole:
-            raise ValueError(f"no whole frame of {count} particles at its end")
-        last = whole[-1]
-        edges = [float(line.split()[1]) for line in last[4 : 4 + box.dimensions]]
+        last = self._last_frame(species)
+        bounds = np.array([line.split()[:2] for line in last[4 : 4 + box.dimensions]], dtype=float)
+        edges = bounds[:, 1] - bounds[:, 0]
+        edges[0] -= abs(_tilt(last))  # of the parallelepiped, not of what bounds it
         if not np.allclose(edges, box.sizes, rtol=1e-9):
             wanted = " x ".join(f"{size:.6g}" for size in box.sizes)
             raise ValueError(
@@ -153,6 +155,35 @@ class LastFrame:
         if table.shape[1] < 8 or not np.array_equal(table[:, 1], types):
             raise ValueError("its particles are of other species")
         return np.asarray(table[:, 2:8])
+
+    def _last_frame(self, species: tuple[Species, ...]) -> list[str]:
+        """The lines after its first.
+
+        Raises:
+            OSError: when there is no such file.
+            ValueError: when it ends without a whole frame of so many particles.
+        """
+        count = sum(each.count for each in species)
+        with Path(self.trajectory).open("rb") as file:
+            file.seek(0, 2)
+            file.seek(max(0, file.tell() - 2 * LONGEST_ROW * (count + 9)))
+            frames = file.read().decode(errors="replace").split("ITEM: TIMESTEP\n")[1:]
+        rows = [frame.splitlines() for frame in frames if frame.endswith("\n")]
+        whole = [lines for lines in rows if len(lines) == count + 8]
+        if not whole:
+            raise ValueError(f"no whole frame of {count} particles at its end")
+        return whole[-1]
+
+    def _shear_rate(self) -> float:
+        """Of the flow in that run, as its manifest tells; 0 without one [1/t0]."""
+        manifest = json.loads(Path(self.trajectory).with_name(MANIFEST).read_text(encoding="utf-8"))
+        return float(manifest["system"]["motion"].get("shear_rate", 0.0))
+
+
+def _tilt(frame: list[str]) -> float:
+    """The third number of the bounds along x, where a box has it."""
+    bounds = frame[4].split()
+    return float(bounds[2]) if len(bounds) == 3 else 0.0
 
 
 def lattice_cells(sizes: tuple[float, ...], count: int) -> list[int]:

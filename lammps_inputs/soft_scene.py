@@ -1,20 +1,22 @@
-"""What scenes of soft particles without a solvent have in common (delhommelle-2005, II).
+"""What scenes of soft particles have in common (delhommelle-2005, II).
 
 Units are those of the pair potential: its sigma, its epsilon and the mass of a particle are 1.
 """
 
 import math
 from collections.abc import Iterator
+from pathlib import Path
 from typing import Annotated, Any, Literal
 
 from pydantic import Field, field_validator
 
-from lammps_inputs.placement import Hexagonal, Lattice, Random
+from lammps_inputs.placement import Hexagonal, LastFrame, Lattice, Random
 from lammps_inputs.potentials.soft_disk import SoftDisk
 from lammps_inputs.potentials.weeks_chandler_andersen import WeeksChandlerAndersen
 from lammps_inputs.scene import NonNegative, Positive, Scene
-from lammps_inputs.system import SIZES, Box, Clock, Placement, Rest
+from lammps_inputs.system import SIZES, TRAJECTORY, Box, Clock, Placement, Rest
 
+STARTS = ("crystal", "random")
 PARTICLES = {2: 896, 3: 1000}
 DENSITY = {2: 1.03, 3: 0.84}
 TEMPERATURE = {2: 1.0, 3: 0.722}
@@ -24,8 +26,6 @@ LOOKS = 20  # of the averages in a sampling interval, at least where it has so m
 LOOK_STEPS = 100
 FLIGHT = 0.15  # of a particle in a step, half the skin of the neighbour lists [sigma]
 FASTEST = 5.0  # thermal speeds that a particle must be able to have
-
-Thermostat = Literal["kinetic", "kinetic_x", "kinetic_y", "configurational", "langevin", "dpd"]
 
 
 class SoftScene(Scene):
@@ -58,6 +58,10 @@ class SoftScene(Scene):
     )
     duration: Positive = Field(default=500.0, description="time after equilibration [t0]")
     equilibration: NonNegative = Field(default=500.0, description="time left out [t0]")
+    start: str = Field(
+        default="crystal",
+        description="crystal, random, or the directory of a run that has gone before",
+    )
 
     @field_validator("particles", "density", "temperature", mode="before")
     @classmethod
@@ -102,17 +106,24 @@ class SoftScene(Scene):
         spacing = math.sqrt(2 / (math.sqrt(3) * self.number_density))
         return Box((columns * spacing, rows * math.sqrt(3) * spacing), periodic=(True, True))
 
-    def placement(self, start: str) -> Placement:
-        """Of the start `crystal` or `random`."""
-        if start == "random":
+    @property
+    def begins_anew(self) -> bool:
+        """Whether it does not begin as another run ended."""
+        return self.start in STARTS
+
+    def placement(self) -> Placement:
+        """Of the start."""
+        if not self.begins_anew:
+            return LastFrame(str(Path(self.start) / TRAJECTORY.file))
+        if self.start == "random":
             return Random(NEAREST * self.number_density ** (-1 / self.dimension))
         if self.dimension == 3:
             return Lattice()
         return Hexagonal(*(self.cells or (self.number, 1)))
 
     def resting(self) -> Rest | None:
-        """The rest before the run."""
-        steps = round(self.rest / self.time_step)
+        """The rest before the run, but after another one."""
+        steps = round(self.rest / self.time_step) if self.begins_anew else 0
         return Rest(steps, self.set_temperature) if steps else None
 
     def clock(self) -> Clock:

@@ -377,6 +377,8 @@ class Solvent:
         coupling: how it meets species: by the force of their interaction with the `FLUID`; or all
             of them reflect it at their radius; or take part in the collision of their cell.
         drift_interval: collisions between removals of the total momentum; 0: never.
+        cell: edge of a collision cell [a0].
+        temperature: [kBT].
     """
 
     particles: int
@@ -389,6 +391,8 @@ class Solvent:
     shear_wave: float = 0.0
     coupling: Coupling = "force"
     drift_interval: int = 0
+    cell: float = 1.0
+    temperature: float = 1.0
 
 
 class Placement(Protocol):
@@ -403,7 +407,10 @@ class Continuation(Placement, Protocol):
     """A placement with velocities, as another run left the particles."""
 
     def velocities(self, box: Box, species: tuple[Species, ...]) -> Array:
-        """Velocities of all species, one after the other, (N, d) [a0/t0]."""
+        """Velocities of all species relative to a shear flow, in order, (N, d) [a0/t0]."""
+
+    def tilt(self, box: Box, species: tuple[Species, ...]) -> float:
+        """How far along x the image above a sheared box is ahead [a0]."""
 
     def problems(self, box: Box, species: tuple[Species, ...]) -> Iterator[str]:
         """Why that run cannot be gone on from, in one line."""

@@ -60,9 +60,10 @@ def viscosity_parts(
 
 def solvent_viscosity(solvent: Solvent, dimensions: int) -> Viscosity:
     """The parts for a solvent, as if its hydrodynamics were on."""
-    return viscosity_parts(
-        solvent.density, solvent.collision_time, solvent.angle, dimensions, solvent.rotation
-    )
+    speed = math.sqrt(solvent.temperature)
+    tau = solvent.collision_time * speed / solvent.cell  # where the cell and kBT are 1
+    parts = viscosity_parts(solvent.density, tau, solvent.angle, dimensions, solvent.rotation)
+    return Viscosity(*(part * solvent.cell * speed for part in parts))
 
 
 def viscosity_theory(solvent: Solvent, dimensions: int) -> float | None:
@@ -119,6 +120,22 @@ def self_diffusion_2d(density: float, collision_time: float, angle: float) -> fl
     """
     decay = _colliding(density) * (1 - math.cos(math.radians(angle)))
     return collision_time * (1 / decay - 0.5)
+
+
+def mobility_in_cells(solvent: Solvent, mass: float, dimensions: int) -> float:
+    """Drift over force of a lone particle that takes part in collisions with a bath [t0/m_f].
+
+    The bath has no memory (hydrodynamics = bath), so that a collision leaves the particle the share
+    <(M + n g) / (M + n)> of its velocity, n fluid particles by Poisson in the cell, g = cos alpha
+    in 2D and (1 + 2 cos alpha) / 3 in 3D: a geometric series, whose mean over an interval it is.
+    """
+    cosine = math.cos(math.radians(solvent.angle))
+    kept = cosine if dimensions == 2 else (1 + 2 * cosine) / 3
+    mean = solvent.density
+    most = int(mean + 20 * math.sqrt(mean) + 20)
+    poisson = (math.exp(n * math.log(mean) - mean - math.lgamma(n + 1)) for n in range(most))
+    share = math.fsum(p * (mass + n * kept) / (mass + n) for n, p in enumerate(poisson))
+    return solvent.collision_time / mass * (1 / (1 - share) - 0.5)
 
 
 def _colliding(density: float) -> float:

@@ -121,6 +121,8 @@ class Solvent(Part):
     shear_wave: float
     coupling: Literal["force", "reflection", "cell"] = "force"
     drift_interval: Whole = 0
+    cell: Positive = 1.0
+    temperature: Positive = 1.0
     viscosity_theory: float | None
 
 

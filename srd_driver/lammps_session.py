@@ -2,6 +2,7 @@
 
 import contextlib
 import ctypes
+import shlex
 import shutil
 import tempfile
 from collections.abc import Iterator
@@ -32,8 +33,8 @@ class LammpsSession:
     LAMMPS itself writes `checkpoint.STEP.restart` every `checkpoint_steps`, from inside its run, so
     a checkpoint does not disturb the trajectory. fix mpc and thermostats without noise resume bit
     for bit. fix srd, fix langevin and pair dpd/tstat keep nothing in restart files: after a resume
-    positions and velocities of all particles are exact, the random numbers are new ones. A sheared
-    box resumes but for half a kick (docs/fix_isokinetic.md).
+    positions and velocities of all particles are exact, the random numbers are new ones. In a
+    sheared box a set-up shows in last digits, so that there is one at each output, as in its deck.
     """
 
     suffix = "restart"
@@ -56,12 +57,12 @@ class LammpsSession:
         self._particles = scene.system.particles
         self._dimensions = scene.system.box.dimensions
         self._set_up = False
-        self._begin, self._end = progress.step, scene.system.clock.total_steps
-        self._sheared = bool(scene.system.shear_rate)
+        self._end, self._sample = scene.system.clock.total_steps, scene.system.clock.sample_steps
         self.lammps = lammps(cmdargs=["-log", "none", "-screen", "none"], comm=comm)
         start = Start(progress.step, progress.checkpoint)
         *setup, run = script(scene, engine, start).splitlines()
         assert run.startswith("run "), "the last line of a deck is its run"
+        self._renewal = shlex.split(run.partition(" every ${sample} ")[2])
         setup.append(f"restart {checkpoint_steps} checkpoint.*.{self.suffix}")
         if self._species:
             setup.append(f"variable mean_colloid_x equal xcm({particle_group(scene.system)},x)")
@@ -112,11 +113,23 @@ class LammpsSession:
         return float(self.lammps.extract_variable("mean_colloid_x"))
 
     def advance(self, steps: int) -> None:
+        if not self._renewal:
+            self._run(steps)
+            return
+        last = self.step + steps
+        while self.step < last:
+            if self.step % self._sample == 0 and self.step > 0:
+                with self._errors():
+                    self.lammps.commands_list(self._renewal)
+                self._set_up = False
+            # fix deform tilts the box by the share of the whole that is done
+            whole = f" start 0 stop {max(self._end, last)}"
+            self._run(min(last - self.step, self._sample - self.step % self._sample), whole)
+
+    def _run(self, steps: int, options: str = "") -> None:
         again = " pre no" if self._set_up else ""
-        if self._sheared:  # fix deform tilts the box by the share of the whole that is done
-            again = f" start {self._begin} stop {max(self._end, self.step + steps)}{again}"
         with self._errors():
-            self.lammps.command(f"run {steps}{again} post no")
+            self.lammps.command(f"run {steps}{options}{again} post no")
         self._set_up = True
         self.step += steps
 

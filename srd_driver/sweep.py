@@ -9,7 +9,7 @@ import os
 import signal
 import subprocess
 import time as clock
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Collection, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 
@@ -26,11 +26,16 @@ LAUNCHER = ("PMI_", "PMIX_")  # by which mpirun or srun would claim our processe
 
 @dataclass(frozen=True)
 class Run:
-    """A scene in an engine, and the run directory it belongs to."""
+    """A scene in an engine, and the run directory it belongs to.
+
+    Attributes:
+        after: a run that must have finished before, if any: its last state is the start.
+    """
 
     folder: Path
     scene: Scene
     engine: str
+    after: "Run | None" = None
 
 
 @dataclass(frozen=True)
@@ -99,7 +104,10 @@ def run_all(
     running: dict[Run, subprocess.Popen[bytes]] = {}
     try:
         while waiting or running:
-            while len(running) < jobs and (run := _next(waiting)):
+            for orphan in _orphans(waiting, failures):
+                waiting.remove(orphan)
+                failures.append(Failure(orphan, "the run that it begins from has failed"))
+            while len(running) < jobs and (run := _next(waiting, running)):
                 waiting.remove(run)
                 if not is_finished(run):  # another process may have done it
                     running[run] = _start(run)
@@ -119,8 +127,15 @@ def run_all(
     return failures
 
 
-def _next(waiting: list[Run]) -> Run | None:
-    return next((run for run in waiting if not is_locked(run.folder)), None)
+def _next(waiting: Sequence[Run], running: Collection[Run]) -> Run | None:
+    unfinished = {*waiting, *running}
+    ready = (run for run in waiting if run.after not in unfinished)
+    return next((run for run in ready if not is_locked(run.folder)), None)
+
+
+def _orphans(waiting: Sequence[Run], failures: Sequence[Failure]) -> list[Run]:
+    failed = {failure.run for failure in failures}
+    return [run for run in waiting if run.after in failed]
 
 
 def _start(run: Run) -> subprocess.Popen[bytes]:

@@ -6,7 +6,7 @@ from analysis import correlated_mean
 from analysis.arrays import Array
 from analysis.drawing import TIME, mark_equilibration, one_panel
 from analysis.findings import Findings
-from analysis.lane_order import lane_order, lane_order_printed
+from analysis.lane_order import colour_structure, lane_order, lane_order_printed
 from analysis.measures.settling_speed import sampled_frames
 from analysis.run_directory import RunDirectory
 
@@ -14,16 +14,18 @@ QUANTITIES = ("lane_order", "lane_order_printed")
 
 
 def measure(run: RunDirectory) -> Findings:
-    """Means over time of both, and the history of the first."""
+    """Means over time of both and of the colours' structure factor; the history of the first."""
     used, particles = sampled_frames(run), run.particles()
     where = (particles.positions, particles.species, run.box.sizes)
     order = lane_order(*where)
     printed = lane_order_printed(particles.positions[used], *where[1:])
+    structure = colour_structure(particles.positions[used], *where[1:])
     picture = draw(run.times(particles.steps), order, run.equilibration_time)
     return Findings(
         {
             "lane_order": correlated_mean.mean(order[used]).as_json(),
             "lane_order_printed": correlated_mean.mean(printed).as_json(),
+            "colour_structure": correlated_mean.mean(structure).as_json(),
         },
         {"lane_order.png": picture},
     )

@@ -44,10 +44,19 @@ def measure(run: RunDirectory) -> Findings:
     temperature = configurational_temperature(squares, laplacians)
     entries["configurational_temperature"] = temperature.as_json()
     warnings += _thermostat_warnings(run, temperature)
-    fields = {float(np.linalg.norm(run.acceleration(s.name))) for s in run.manifest.system.species}
-    if "current" in table.columns and len(fields) == 1 and fields != {0.0}:
-        entries["mobility"] = mobility(table["current"][used], fields.pop()).as_json()
+    field = field_of(run)
+    if "current" in table.columns and field:
+        entries["mobility"] = mobility(table["current"][used], field).as_json()
     return Findings(entries, warnings=tuple(warnings))
+
+
+def field_of(run: RunDirectory) -> float | None:
+    """The force on each particle [kBT/a0], where it is as strong on all."""
+    fields = {
+        float(np.linalg.norm(run.acceleration(each.name))) * each.mass
+        for each in run.manifest.system.species
+    }
+    return fields.pop() if len(fields) == 1 else None
 
 
 def _thermostat_warnings(run: RunDirectory, temperature: Estimate) -> list[str]:

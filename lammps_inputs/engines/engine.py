@@ -1,7 +1,7 @@
 """What an engine says of a system before it runs, and what it writes of one."""
 
 from abc import ABC, abstractmethod
-from collections.abc import Collection, Iterator
+from collections.abc import Collection, Iterator, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 from typing import ClassVar
@@ -30,6 +30,7 @@ class Engine(ABC):
         rests: whether it can let a system rest before the run.
         couplings: of species to a solvent that it knows.
         tells_flow: whether it tells the flow of the fluid on a grid.
+        scales: whether a solvent may have cells of another edge than a0, and not be of kBT.
     """
 
     name: ClassVar[str]
@@ -42,6 +43,7 @@ class Engine(ABC):
     rests: ClassVar[bool] = False
     couplings: ClassVar[tuple[Coupling, ...]] = ("force",)
     tells_flow: ClassVar[bool] = False
+    scales: ClassVar[bool] = False
 
     @abstractmethod
     def problems(self, system: System) -> Iterator[str]:
@@ -80,6 +82,11 @@ class Engine(ABC):
         if system.solvent and system.solvent.coupling not in self.couplings:
             known = " or ".join(self.couplings)
             yield f"coupling = {system.solvent.coupling!r}: engine {self.name} has {known} only"
+        if system.solvent and not self.scales:
+            for part in ("cell", "temperature"):
+                value = getattr(system.solvent, part)
+                if value != 1:
+                    yield f"{part} of the solvent = {value!r}: engine {self.name} has 1 only"
 
     def no_moving_walls(self, system: System) -> Iterator[str]:
         """A line for each wall that moves."""
@@ -150,6 +157,13 @@ class LammpsEngine(Engine):
     def preparation(self, system: System, start: Start) -> Iterator[str]:
         """What comes before step 0."""
         yield from ()
+
+    def renewal(self, system: System) -> Sequence[str]:
+        """Commands at each output, after which the run is set up anew as where it is resumed.
+
+        None where a run goes on to the last bit without them.
+        """
+        return ()
 
     def solvent(self, system: System, start: Start) -> Iterator[str]:
         """The fluid."""

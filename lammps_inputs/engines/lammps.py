@@ -119,7 +119,9 @@ def trajectory(output: Output, system: System, start: Start) -> Iterator[str]:
     yield f"dump_modify trajectory sort id first yes format float %.10g{append}"
 
 
-def data_header(system: System, title: str, atoms: int, types: int) -> Iterator[str]:
+def data_header(
+    system: System, title: str, atoms: int, types: int, tilt: float = 0.0
+) -> Iterator[str]:
     """The head of a data file: what it is, counts, the box."""
     yield f"# narrows: {title}\n\n"
     yield f"{atoms} atoms\n{types} atom types\n\n"
@@ -128,13 +130,13 @@ def data_header(system: System, title: str, atoms: int, types: int) -> Iterator[
         low, high = (0.0, size) if axis < system.box.dimensions else (-0.5, 0.5)
         yield f"{low!r} {high!r} {name}lo {name}hi\n"
     if system.shear_rate:
-        yield "0.0 0.0 0.0 xy xz yz\n"
+        yield f"{tilt!r} 0.0 0.0 xy xz yz\n"
 
 
 def particle_data(system: System, state: InitialState, title: str) -> Iterable[str]:
     """The data file of the species alone, of atom style sphere where they rotate, else atomic."""
     types = max(1, len(system.species))  # LAMMPS needs a type, also of no atoms
-    yield from data_header(system, title, system.particles, types)
+    yield from data_header(system, title, system.particles, types, state.tilt)
     masses = [species.mass for species in system.species] or [1.0]
     if system.rotates:
         yield from _sphere_data(system, state)

@@ -1,6 +1,6 @@
 """Plain molecular dynamics by LAMMPS's own styles: species without a solvent."""
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from pathlib import Path
 from typing import ClassVar
 
@@ -12,10 +12,10 @@ from lammps_inputs.potentials.repulsive_mie import RepulsiveMie
 from lammps_inputs.system import SIZES, System, VelocityVerlet
 
 SKIN = 0.3  # of the neighbour list [a0]
+LISTS = "fix lists all balance ${sample} 1e9 shift x 1 1.1"
 
 EXPRESSIONS = {
     "temperature": "c_thermo_temp",
-    "potential_energy": "c_thermo_pe/atoms",
     "mean_velocity_x": "vcm(all,x)",
 }
 
@@ -65,11 +65,16 @@ class MolecularDynamics(LammpsEngine):
         yield f"neighbor {SKIN!r} bin"
         yield "neigh_modify delay 0 every 1 check yes"
         yield "# when lists are built shows in last digits: as at checkpoints, so at each output"
-        yield "fix lists all balance ${sample} 1e9 shift x 1 1.1 # never that imbalanced"
+        yield f"{LISTS} # never that imbalanced"
 
     def preparation(self, system: System, start: Start) -> Iterator[str]:
         if not start.checkpoint:
             yield from soft_particles.preparation(system)
+        if system.shear_rate:
+            yield from soft_particles.kept_places()
+
+    def renewal(self, system: System) -> Sequence[str]:
+        return (soft_particles.PUT_BACK, "unfix lists", LISTS) if system.shear_rate else ()
 
     def motion(self, system: System) -> Iterator[str]:
         yield from soft_particles.motion(system)

@@ -7,7 +7,7 @@ from typing import ClassVar
 
 import numpy as np
 
-from lammps_inputs.engines import lammps
+from lammps_inputs.engines import lammps, soft_particles
 from lammps_inputs.engines.engine import LammpsEngine, Start
 from lammps_inputs.engines.force_coupling import force_problems
 from lammps_inputs.initial_state import InitialState
@@ -27,8 +27,9 @@ from lammps_inputs.system import (
     VelocityVerlet,
 )
 
-SKIN = 0.5  # least of the neighbour list [a0]
-SLOW = 0.1  # drift of species that the fluid carries [a0/t0]
+SKIN, LONGEST_SKIN = 0.5, 0.85  # of the neighbour list [a0]
+SLOW = 0.1  # drift of species that the fluid carries, at least [a0/t0]
+FLIGHTS = 10  # collision times of free fall that such a drift comes to, at most
 
 
 class Mpc(LammpsEngine):
@@ -36,18 +37,21 @@ class Mpc(LammpsEngine):
 
     name: ClassVar[str] = "mpc"
     plugin = True
-    pair_potentials = (RepulsiveMie, Dlvo)
+    pair_potentials = (RepulsiveMie, Dlvo, *soft_particles.POTENTIALS)
     wall_potentials = (IntegratedWall, HarmonicWall)
     motions = (VelocityVerlet,)
+    rests = True
     couplings = ("force", "reflection", "cell")
     tells_flow = True
+    scales = True
 
     def problems(self, system: System) -> Iterator[str]:
         yield from self.needs_solvent(system)
         yield from self.unknown_parts(system)
         yield from self.needs_walls_or_periodic(system)
         known = SUSPENSION_AVERAGES if system.rotates else FLUID_AVERAGES
-        yield from self.needs_known_tables(system, known.columns)
+        known_columns = {*known.columns, *soft_particles.expressions(system)}
+        yield from self.needs_known_tables(system, known_columns)
         yield from lammps.one_pair_style(system)
         yield from force_problems(system)
         fluid = system.solvent
@@ -80,13 +84,19 @@ class Mpc(LammpsEngine):
         between = system.particle_interactions()
         yield from lammps.pairs(system)
         yield f"pair_modify {system.particle_interactions()[0].potential.pair_modify}"
-        skin = max(SKIN, 2 * max(_travel(system, each) for each in system.species))
+        travel = 2 * max(_travel(system, each) for each in system.species)
+        lists = _lists(system, travel)
+        skin = max(SKIN, travel / lists)
         yield f"neighbor {skin:.6g} bin"
-        yield from _lists_at_collisions(system)
+        yield from _lists_at_collisions(system, lists)
         if ghosts > skin + max(i.potential.cutoff for i in between):
             yield f"comm_modify cutoff {ghosts:.6g} # the fluid sees {_group(system)} so far"
         if any(i.potential.dissipates for i in between):
             yield "comm_modify vel yes"
+
+    def preparation(self, system: System, start: Start) -> Iterator[str]:
+        if not start.checkpoint:
+            yield from soft_particles.preparation(system)
 
     def motion(self, system: System) -> Iterator[str]:
         if system.species:
@@ -134,11 +144,12 @@ class Mpc(LammpsEngine):
         coupled = _group(system) if system.coupled else "NULL"
         yield "# the MPC solvent"
         yield (
-            f"fix solvent all mpc {clock.steps_per_collision} {coupled} 1.0 1.0 ${{seed}} "
-            + " ".join(options)
+            f"fix solvent all mpc {clock.steps_per_collision} {coupled} {fluid.temperature!r} "
+            f"{fluid.cell!r} ${{seed}} " + " ".join(options)
         )
 
     def averages(self, system: System, start: Start) -> Iterator[str]:
+        yield from soft_particles.computes(system)
         yield "# output, averaged over each sampling interval; the solvent writes its own profile"
         yield "variable fluid_temperature equal f_solvent"
         if system.species:
@@ -154,6 +165,11 @@ class Mpc(LammpsEngine):
             yield "variable fluid_velocity_x equal f_solvent[1]/f_solvent[4]"
             yield "variable fluid_velocity_z equal f_solvent[3]/f_solvent[4]"
             yield from lammps.rotational_temperature(system)
+        known = soft_particles.expressions(system)
+        for output in system.outputs:
+            for column in output.columns:
+                if output.kind == "table" and column in known:
+                    yield f"variable {column} equal {known[column]}"
 
     def write(self, system: System, state: InitialState, title: str, directory: Path) -> None:
         with (directory / "state.data").open("w", encoding="utf-8") as file:
@@ -191,10 +207,23 @@ def _group(system: System) -> str:
     return lammps.particle_group(system)
 
 
-def _lists_at_collisions(system: System) -> Iterator[str]:
-    """At no other step: LAMMPS would do it at those of checkpoints too, and these would show."""
+def _lists(system: System, travel: float) -> int:
+    """How often in a collision interval lists are built, for a skin that is not too long.
+
+    Once where the fluid sees species between collisions.
+    """
+    steps = system.clock.steps_per_collision
+    if _fluid(system).coupling != "cell":
+        return 1
+    divisors = (number for number in range(1, steps + 1) if steps % number == 0)
+    return next((number for number in divisors if travel / number <= LONGEST_SKIN), steps)
+
+
+def _lists_at_collisions(system: System, lists: int = 1) -> Iterator[str]:
+    """At fixed steps: else LAMMPS would do it at those of checkpoints, and these would show."""
     yield "# when lists are built and places wrapped shows in last digits: at each collision"
-    yield f"neigh_modify delay 0 every {system.clock.steps_per_collision} check no"
+    steps = system.clock.steps_per_collision // lists
+    yield f"neigh_modify delay 0 every {steps} check no"
 
 
 def _travel(system: System, species: Species) -> float:
@@ -205,8 +234,11 @@ def _travel(system: System, species: Species) -> float:
     """
     fluid = _fluid(system)
     walls = max((max(map(abs, wall.velocity)) for wall in system.walls), default=0.0)
-    drift = 1 if fluid.coupling == "force" else SLOW + walls
-    return fluid.collision_time * (drift + 10 / math.sqrt(species.mass))
+    pulled = max((each.magnitude for each in system.drives_on(species.name)), default=0.0)
+    falling = max(SLOW, FLIGHTS * pulled * fluid.collision_time)
+    drift = 1 if fluid.coupling == "force" else falling + walls
+    thermal = math.sqrt(fluid.temperature / species.mass)
+    return fluid.collision_time * (drift + 10 * thermal)
 
 
 def _ghost_cutoff(system: System) -> float:

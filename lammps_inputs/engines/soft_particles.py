@@ -10,6 +10,9 @@ from lammps_inputs.system import Configurational, DissipativePairs, Isokinetic, 
 
 POTENTIALS = (SoftDisk, WeeksChandlerAndersen)  # with three derivatives; of our plugin
 MOTIONS = (Isokinetic, Configurational, Langevin, DissipativePairs)
+PUT_BACK = (
+    "set group all x v_place_x y v_place_y z v_place_z image v_place_ix v_place_iy v_place_iz"
+)
 NOISE_STREAM = 92  # Philox key of the seeds of noise after a resume
 
 
@@ -68,6 +71,14 @@ def preparation(system: System) -> Iterator[str]:
         yield "velocity all ramp vx 0 ${shear} y $(ylo) $(yhi) sum yes units box"
 
 
+def kept_places() -> Iterator[str]:
+    """Places of a sheared box to the last bit, for the command `PUT_BACK`."""
+    yield "# restart files round places in a tilted box: they are kept, and put back at each output"
+    yield "fix places all store/state 1 x y z ix iy iz"
+    for number, name in enumerate(("x", "y", "z", "ix", "iy", "iz"), start=1):
+        yield f"variable place_{name} atom f_places[{number}]"
+
+
 def motion(system: System) -> Iterator[str]:
     """What moves the particles."""
     motion = system.motion
@@ -106,6 +117,7 @@ def expressions(system: System) -> dict[str, str]:
     temperature = "c_relative" if system.shear_rate else "c_thermo_temp"
     known = {
         "kinetic_temperature": f"{temperature}*(atoms-1)/atoms",
+        "potential_energy": "c_thermo_pe/atoms",
         "pressure": "c_virial",
         "force_squares": "c_configurations[1]",
         "laplacians": "c_configurations[2]",

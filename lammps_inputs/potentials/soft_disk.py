@@ -5,19 +5,18 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import ArrayLike
 
+from lammps_inputs.potentials.soft_repulsion import SoftRepulsion
 from lammps_inputs.system import Array
 
 
 @dataclass(frozen=True)
-class SoftDisk:
+class SoftDisk(SoftRepulsion):
     """epsilon (sigma/r)^12 within a cutoff, zero beyond (delhommelle-2005, II; its cutoff unsaid).
 
     `shifted` takes the energy at the cutoff off, so that it is continuous; the force is not, by
     12 epsilon sigma^12 / cutoff^13: 1.5e-3 at 2 sigma.
     """
 
-    sigma: float = 1.0
-    epsilon: float = 1.0
     cutoff: float = 2.0
     shifted: bool = True
 
@@ -28,14 +27,6 @@ class SoftDisk:
         shift = self.epsilon * (self.sigma / self.cutoff) ** 12 if self.shifted else 0.0
         energy = np.where(r < self.cutoff, u - shift, 0.0)
         return energy, -12 * u / r, 156 * u / r**2, -2184 * u / r**3
-
-    def energy(self, r: ArrayLike) -> Array:
-        """Energy at distances r > 0 (any shape)."""
-        return self.derivatives(r)[0]
-
-    def force(self, r: ArrayLike) -> Array:
-        """-dU/dr at distances r > 0 (any shape)."""
-        return -self.derivatives(r)[1]
 
     @property
     def title(self) -> str:
@@ -52,19 +43,6 @@ class SoftDisk:
         return f" {cutoff!r}"
 
     @property
-    def dissipates(self) -> bool:
-        """No."""
-        return False
-
-    @property
     def pair_modify(self) -> str:
         """Arguments of `pair_modify`."""
         return "shift yes" if self.shifted else "shift no"
-
-    def pair_coeff(self, types: str) -> str:
-        """The `pair_coeff` line of two atom types."""
-        return f"pair_coeff {types} {self.epsilon!r} {self.sigma!r}"
-
-    def no_pair_coeff(self, types: str) -> str:
-        """The `pair_coeff` line of two atom types that do not interact."""
-        return f"pair_coeff {types} 0.0 {self.sigma!r}"

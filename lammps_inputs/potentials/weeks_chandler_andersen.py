@@ -6,18 +6,16 @@ from typing import ClassVar
 import numpy as np
 from numpy.typing import ArrayLike
 
+from lammps_inputs.potentials.soft_repulsion import SoftRepulsion
 from lammps_inputs.system import Array
 
 
 @dataclass(frozen=True)
-class WeeksChandlerAndersen:
+class WeeksChandlerAndersen(SoftRepulsion):
     """epsilon (1 - 4 [(sigma/r)^6 - (sigma/r)^12]) within 2^(1/6) sigma (delhommelle-2005, II).
 
     Energy and force are continuous at the cutoff, the second derivative is not.
     """
-
-    sigma: float = 1.0
-    epsilon: float = 1.0
 
     reach: ClassVar[float] = 2 ** (1 / 6)
 
@@ -39,14 +37,6 @@ class WeeksChandlerAndersen:
             (336 * six - 2184 * twelve) / r**3,
         )
 
-    def energy(self, r: ArrayLike) -> Array:
-        """Energy at distances r > 0 (any shape)."""
-        return self.derivatives(r)[0]
-
-    def force(self, r: ArrayLike) -> Array:
-        """-dU/dr at distances r > 0 (any shape)."""
-        return -self.derivatives(r)[1]
-
     @property
     def title(self) -> str:
         """What it is, for a deck."""
@@ -62,19 +52,6 @@ class WeeksChandlerAndersen:
         return ""
 
     @property
-    def dissipates(self) -> bool:
-        """No."""
-        return False
-
-    @property
     def pair_modify(self) -> str:
         """Arguments of `pair_modify`: it ends at zero by itself."""
         return "shift no"
-
-    def pair_coeff(self, types: str) -> str:
-        """The `pair_coeff` line of two atom types."""
-        return f"pair_coeff {types} {self.epsilon!r} {self.sigma!r}"
-
-    def no_pair_coeff(self, types: str) -> str:
-        """The `pair_coeff` line of two atom types that do not interact."""
-        return f"pair_coeff {types} 0.0 {self.sigma!r}"

@@ -41,7 +41,6 @@ class Shear(SoftScene):
         default="kinetic",
         description="kinetic energy relative to the flow fixed, or the configurational temperature",
     )
-    start: Literal["crystal", "random"] = Field(default="crystal", description="crystal or random")
     sampling_interval: Positive = Field(
         default=1.0, description="time between two outputs, at least two steps [t0]"
     )
@@ -69,7 +68,7 @@ class Shear(SoftScene):
             box=self.box(),
             clock=self.clock(),
             species=(Species("particles", self.number, 1.0, 0.5),),
-            placement=self.placement(self.start),
+            placement=self.placement(),
             interactions=(Interaction("particles", "particles", self.potential),),
             motion=motion,
             rest=self.resting(),
@@ -87,7 +86,7 @@ class Shear(SoftScene):
                 f"time_step = {self.time_step!r}: too long for a rate of {self.rate!r}; must be at "
                 f"most {STRAIN / self.rate:.2g}"
             )
-        if self.thermostat == "configurational" and not self.resting():
+        if self.thermostat == "configurational" and self.begins_anew and not self.resting():
             yield (
                 f"rest = {self.rest!r}: the configurational thermostat runs away from a lattice; "
                 "let it melt at rest first, for about 20"
@@ -96,9 +95,9 @@ class Shear(SoftScene):
     def warnings(self) -> Iterator[str]:
         yield from super().warnings()
         largest = SUDDEN[self.thermostat]
-        if self.rate > largest:
+        if self.rate > largest and self.begins_anew:
             yield (
                 f"rate = {self.rate!r}: the flow begins at once, and heats the particles faster "
                 f"than the {self.thermostat} thermostat cools them; above {largest:g} runs have "
-                "stopped, with steps down to 0.0001"
+                "stopped, with steps down to 0.0001: go up a ladder of rates by `start`"
             )

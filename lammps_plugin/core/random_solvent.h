@@ -11,7 +11,7 @@ template <int D> class RandomSolvent {
  public:
   virtual ~RandomSolvent() = default;
 
-  // Whether the collision is left out.
+  // Whether the collision is left out, as far as nobody but the fluid takes part in it.
   virtual bool replaces_collision() const = 0;
   virtual void redraw(Fluid<D> &, const CounterRandom &, Processes &, double particles) = 0;
 };

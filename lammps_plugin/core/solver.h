@@ -440,8 +440,9 @@ template <int D> class Solver {
     auto *coupling = method_.coupling.get();
     auto *solvent = method_.random_solvent.get();
     auto *thermostat = method_.thermostat.get();
-    if (!solvent || !solvent->replaces_collision()) {
-      const bool joining = coupling && coupling->in_collision();
+    // where colloids join, it is by the collision that they meet even a fluid to be redrawn
+    const bool joining = coupling && coupling->in_collision();
+    if (joining || !solvent || !solvent->replaces_collision()) {
       if (joining) coupling->join(grid_, colloids, sums_, processes_);
       make_turns(random);
       turning_ = true;

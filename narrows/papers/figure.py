@@ -34,6 +34,10 @@ def _no_scenes(quality: Quality) -> Sequence[Scene]:
     return ()
 
 
+def _no_ladders(quality: Quality) -> Sequence[Sequence[Scene]]:
+    return ()
+
+
 @dataclass(frozen=True)
 class PaperFigure:
     """One figure.
@@ -61,12 +65,15 @@ class Paper:
         name: on the command line.
         title: of the page.
         figures: in order.
-        engine: of its runs.
+        engine: of its runs; None: of each the first that can run it.
         units: of its numbers.
+        ladders: chains of scenes that have a field `start`; each but the first begins as the one
+            before it ended.
     """
 
     name: str
     title: str
     figures: tuple[PaperFigure, ...]
-    engine: str
+    engine: str | None
     units: str
+    ladders: Callable[[Quality], Sequence[Sequence[Scene]]] = field(default=_no_ladders)

@@ -30,6 +30,7 @@ class Report:
     Attributes:
         left_out: one line for each figure that could not be made.
         runs: distinct runs behind the figures.
+        engines: of the runs.
         run_seconds: core time of all runs, earlier commands included [s].
         this_run_seconds, figure_seconds: wall time of this command's runs and figures [s].
         seeds: of the runs.
@@ -41,6 +42,7 @@ class Report:
     made: Sequence[Made]
     left_out: Sequence[str]
     runs: int
+    engines: Sequence[str]
     run_seconds: float
     this_run_seconds: float
     figure_seconds: float
@@ -176,7 +178,7 @@ def _making(report: Report) -> str:
     versions = ", ".join(f"{name} {version}" for name, version in report.versions.items())
     span = f"{report.seeds[0]} to {report.seeds[-1]}" if report.seeds else "none"
     rows = {
-        "runs": f"{report.runs} by the engine {report.paper.engine}, "
+        "runs": f"{report.runs} by the engine {' or '.join(report.engines)}, "
         f"{report.run_seconds / 60:.1f} core minutes",
         "this command": f"{report.this_run_seconds / 60:.1f} minutes of runs, {report.jobs} at a "
         f"time, and {report.figure_seconds:.0f} seconds for the figures",

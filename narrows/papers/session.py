@@ -6,15 +6,17 @@ A run that fails costs the figures that need it, and no others.
 import csv
 import hashlib
 import time as clock
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field
 from importlib.metadata import version
+from itertools import pairwise
 from pathlib import Path
 
 import matplotlib
 
 from analysis import RunDirectory, RunDirectoryError
 from lammps_inputs import Scene
+from lammps_inputs.engines import default_engine
 from narrows.papers.drawing import STYLE
 from narrows.papers.figure import Outcome, Paper, PaperFigure, Quality
 from narrows.papers.page import Made, Report, write_page
@@ -35,13 +37,19 @@ def select(paper: Paper, numbers: Sequence[str]) -> list[PaperFigure]:
     return [figure for figure in paper.figures if not numbers or figure.number in numbers]
 
 
-def run_of(scene: Scene, engine: str, out: Path) -> Run:
-    """The run of a scene; its folder is named by what it is, so that figures share it."""
-    digest = hashlib.sha256((scene.toml() + engine).encode()).hexdigest()[:10]
+def run_of(scene: Scene, engine: str, out: Path, after: Run | None = None) -> Run:
+    """The run of a scene; its folder is named by what it is, so that figures share it.
+
+    With `after` it begins as that run ended: its field `start` is that run's directory.
+    """
+    before = after.folder.name if after else ""
+    digest = hashlib.sha256((scene.toml() + engine + before).encode()).hexdigest()[:10]
     system = scene.system
     sizes = "x".join(f"{size:g}" for size in system.box.sizes)
     name = f"{scene.name}-{sizes}-{system.particles or 'no'}-{digest}"
-    return Run(out / "runs" / name, scene, engine)
+    if after:
+        scene = scene.make(**(scene.model_dump() | {"start": str(after.folder.resolve())}))
+    return Run(out / "runs" / name, scene, engine, after)
 
 
 @dataclass
@@ -52,12 +60,28 @@ class Plan:
     figures: Sequence[PaperFigure]
     quality: Quality
     out: Path
-    runs: list[Run] = field(init=False)
+    run_by_scene: dict[Scene, Run] = field(init=False)
 
     def __post_init__(self) -> None:
-        scenes = {scene: None for figure in self.figures for scene in figure.scenes(self.quality)}
-        longest_first = sorted(scenes, key=lambda scene: -scene.system.work)
-        self.runs = [run_of(scene, self.paper.engine, self.out) for scene in longest_first]
+        ladders = self.paper.ladders(self.quality)
+        before = {scene: last for ladder in ladders for last, scene in pairwise(ladder)}
+        self.run_by_scene = {}
+        for figure in self.figures:
+            for scene in figure.scenes(self.quality):
+                self._add(scene, before)
+
+    def _add(self, scene: Scene, before: Mapping[Scene, Scene]) -> Run:
+        """The run of a scene, after those that it comes after."""
+        if scene not in self.run_by_scene:
+            after = self._add(before[scene], before) if scene in before else None
+            engine = self.paper.engine or default_engine(scene.system)
+            self.run_by_scene[scene] = run_of(scene, engine, self.out, after)
+        return self.run_by_scene[scene]
+
+    @property
+    def runs(self) -> list[Run]:
+        """The distinct runs, the longest first."""
+        return sorted(self.run_by_scene.values(), key=lambda run: -run.scene.system.work)
 
     def finished(self) -> int:
         """How many of the runs are finished already.
@@ -85,10 +109,12 @@ def carry_out(plan: Plan, jobs: int, report: Callable[[Advance], None] | None = 
     """
     began = clock.perf_counter()
     plan.out.mkdir(parents=True, exist_ok=True)
-    failures = {failure.run.scene: failure for failure in run_all(plan.runs, jobs, report)}
+    failed_runs = {failure.run: failure for failure in run_all(plan.runs, jobs, report)}
     ran = clock.perf_counter()
+    planned = plan.run_by_scene.items()
+    failures = {scene: failed_runs[run] for scene, run in planned if run in failed_runs}
     directories = {
-        run.scene: RunDirectory(run.folder) for run in plan.runs if run.scene not in failures
+        scene: RunDirectory(run.folder) for scene, run in planned if run not in failed_runs
     }
     made, left_out = list[Made](), list[str]()
     for figure in plan.figures:
@@ -114,6 +140,7 @@ def carry_out(plan: Plan, jobs: int, report: Callable[[Advance], None] | None = 
             made,
             left_out,
             runs=len(plan.runs),
+            engines=sorted({run.engine for run in plan.runs}),
             run_seconds=sum(run.wall_seconds() or 0.0 for run in directories.values()),
             this_run_seconds=ran - began,
             figure_seconds=clock.perf_counter() - ran,

@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 from numpy.typing import NDArray
 
-from analysis.lane_order import lane_order, lane_order_printed
+from analysis.lane_order import colour_structure, lane_order, lane_order_printed
 
 Array = NDArray[np.float64]
 
@@ -61,6 +61,26 @@ def test_lanes_along_the_field_and_the_erratum(dimension: int) -> None:
     bands, _ = stripes(0, dimension)
     assert lane_order_printed(bands, COLOURS, lengths).tolist() == [1] * 4
     assert lane_order(bands, COLOURS, lengths).max() < 0.1
+
+
+@pytest.mark.parametrize("bands", [2, 6])
+def test_colour_structure_of_bands(bands: int) -> None:
+    """Uniform bands of one colour each: the amplitude of a square wave, 2/pi, times N."""
+    y = (np.arange(6000) + 0.5) / 6000
+    colours = (y * bands).astype(int) % 2
+    x = np.random.default_rng(3).uniform(0, 9, 6000)
+    positions = np.stack([x, 7.0 * y], axis=1)[None]
+    structure = colour_structure(positions, colours, [9.0, 7.0])
+    assert structure == pytest.approx([6000 * (2 / np.pi) ** 2], rel=1e-3)
+
+
+def test_colour_structure_of_random_colours() -> None:
+    """Squares of each of 4 waves are exponential, of mean 1: the largest has the mean 25/12."""
+    random = np.random.default_rng(4)
+    positions = random.uniform(0, 30, (4000, 100, 2))
+    structure = colour_structure(positions, np.arange(100) % 2, [30.0, 30.0])
+    error = structure.std() / np.sqrt(len(structure))
+    assert abs(structure.mean() - 25 / 12) < 4 * error
 
 
 def test_a_well_mixed_gas() -> None:

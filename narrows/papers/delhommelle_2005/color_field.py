@@ -13,6 +13,7 @@ from narrows.papers.delhommelle_2005.state_points import (
     CRYSTAL,
     FLUID,
     disks,
+    ladders_of,
     largest,
     numbers,
 )
@@ -24,7 +25,7 @@ FIELD = "field $F$"
 REENTRANCE = 1.75
 DENSITIES = (0.5, 0.75, 0.92, 1.03)
 BROKEN = {"quick": (1.5, 2.25, 10.0, 70.0), "full": (1.5, 2.25, 10.0, 70.0)}
-HERE = "from a crystal at rest, shorter than the paper's ladder of 5000 + 5000 time units"
+HERE = "shorter than the paper's 5000 + 5000 time units; `--quick` from a crystal at rest"
 
 
 def _fields(thermostat: str, quality: Quality) -> list[float]:
@@ -391,3 +392,11 @@ FIGURES = (
         lambda quality: list(_map("configurational", quality).values()),
     ),
 )
+
+
+def ladders(quality: Quality) -> list[list[Scene]]:
+    """At full quality each field begins as the one before ended, as the paper does it."""
+    if quality == "quick":
+        return []
+    scenes = [scene for figure in FIGURES for scene in figure.scenes(quality)]
+    return ladders_of(scenes, "field")

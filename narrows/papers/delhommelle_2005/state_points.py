@@ -1,7 +1,8 @@
 """The runs behind the figures of lane formation, and what their summaries say.
 
-The paper runs 5000 time units twice at each field, from the field before; here each begins at rest,
-from a crystal, and is shorter. docs/reproduce.md says what that costs.
+The paper runs 5000 time units twice at each field, from the field before. At full quality these are
+ladders too, of shorter runs: lanes settle within 1000 time units. For `--quick` each run begins at
+rest, from a crystal, and is too short for phi. docs/reproduce.md says what that costs.
 """
 
 from collections.abc import Iterable, Sequence
@@ -14,6 +15,9 @@ from narrows.papers.figure import Directories, Quality
 CRYSTAL = 1.03
 FLUID = 0.75
 LARGEST = 10.0  # field of a configurational run
+UP, DOWN = 1, 2  # seeds
+ALIKE = ("dimension", "density", "thermostat", "seed")  # what the runs of a ladder share
+LENGTHS = {"kinetic": (1000.0, 1500.0), "configurational": (300.0, 700.0)}  # full quality [t0]
 THERMOSTATS = {
     "kinetic": "kinetic energy",
     "configurational": "configurational temperature",
@@ -22,8 +26,8 @@ THERMOSTATS = {
 }
 
 
-def disks(density: float, field: float, thermostat: str, quality: Quality) -> Scene:
-    """896 soft disks in a field."""
+def disks(density: float, field: float, thermostat: str, quality: Quality, seed: int = UP) -> Scene:
+    """896 soft disks in a field; seed `DOWN` on a ladder's way down."""
     quick = quality == "quick"
     equilibration, duration = (150.0, 100.0) if thermostat == "kinetic" else (50.0, 50.0)
     step = 0.001
@@ -36,8 +40,9 @@ def disks(density: float, field: float, thermostat: str, quality: Quality) -> Sc
         thermostat=thermostat,
         time_step=step,
         sampling_interval=2.0 if quick else 5.0,
-        equilibration=equilibration if quick else 1500.0,
-        duration=duration if quick else 1500.0,
+        equilibration=equilibration if quick else LENGTHS[thermostat][0],
+        duration=duration if quick else LENGTHS[thermostat][1],
+        seed=seed,
     )
 
 
@@ -51,26 +56,36 @@ def spheres(field: float, thermostat: str, quality: Quality) -> Scene:
         thermostat=thermostat,
         time_step=0.001 if thermostat == "kinetic" or field < 4 else 0.0005,
         sampling_interval=2.0 if quick else 5.0,
-        equilibration=40.0 if quick else 600.0,
+        equilibration=40.0 if quick else 400.0,
         duration=40.0 if quick else 600.0,
     )
 
 
 def sheared(rate: float, thermostat: str, quality: Quality) -> Scene:
-    """1000 of the spheres, sheared; the step is one that outlives the sudden start of the flow."""
+    """1000 of the spheres, sheared; a step of a ladder of rates."""
     quick = quality == "quick"
     step = 0.001 if rate <= 10 else 0.0002
     if thermostat == "configurational" and rate > 1:
-        step = 0.0005 if rate <= 2 else 0.0002
+        step = 0.0005 if rate <= 2 else 0.0002 if rate <= 4 else 0.0001
     return make_scene(
         "shear",
         rate=rate,
         thermostat=thermostat,
         time_step=step,
-        sampling_interval=0.5,
-        equilibration=10.0 if quick else 100.0,
-        duration=15.0 if quick else 200.0,
+        sampling_interval=0.2,
+        equilibration=2.0 if quick else 20.0,
+        duration=6.0 if quick else 40.0,
     )
+
+
+def ladders_of(scenes: Iterable[Scene], key: str) -> list[list[Scene]]:
+    """Scenes that differ in a field only, `rate` for one, each chain from the lowest on."""
+    chains: dict[str, list[Scene]] = {}
+    for scene in dict.fromkeys(scenes):
+        fields = scene.model_dump()
+        chain = {name: fields[name] for name in ALIKE if name in fields}
+        chains.setdefault(repr(chain), []).append(scene)
+    return [sorted(chain, key=lambda scene: getattr(scene, key)) for chain in chains.values()]
 
 
 def number(directories: Directories, scene: Scene, key: str) -> Estimate:

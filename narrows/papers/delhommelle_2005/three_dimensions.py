@@ -11,6 +11,7 @@ from analysis.run_directory import RunDirectory
 from lammps_inputs import Scene
 from narrows.papers.delhommelle_2005.state_points import (
     THERMOSTATS,
+    ladders_of,
     largest,
     numbers,
     sheared,
@@ -87,9 +88,10 @@ def _figure_9(directories: Directories, quality: Quality) -> Outcome:
 
 
 def _rates(thermostat: str, quality: Quality) -> tuple[float, ...]:
-    """Those that a run outlives which begins with the flow at once: docs/reproduce.md."""
+    """Those that a ladder outlives: docs/lanes.md."""
     if thermostat == "configurational":
-        return (1.0, 2.0, 4.0) if quality == "quick" else (0.5, 1.0, 1.5, 2.0, 3.0, 4.0)
+        quick, full = (1.0, 2.0, 4.0, 5.0, 6.0), (0.5, 1.0, 1.5, 2.0, 3.0, 4.0, 5.0, 6.0)
+        return quick if quality == "quick" else full
     if quality == "quick":
         return (1.0, 4.0, 7.0, 10.0, 20.0)
     return (0.5, 1.0, 1.5, 2.0, 3.0, 4.0, 5.0, 7.0, 10.0, 15.0, 20.0)
@@ -221,3 +223,15 @@ FIGURES = (
         lambda quality: [sheared(rate, "kinetic", quality) for rate in STRINGS],
     ),
 )
+
+
+def ladders(quality: Quality) -> list[list[Scene]]:
+    """Of rates; at full quality of fields too."""
+    sheared_scenes = [
+        scene for each in _flow_curve(quality).values() for scene in each.values()
+    ] + [sheared(rate, "kinetic", quality) for rate in STRINGS]
+    driven = [scene for each in _driven(quality).values() for scene in each.values()]
+    return [
+        *ladders_of(sheared_scenes, "rate"),
+        *(ladders_of(driven, "field") if quality == "full" else []),
+    ]

@@ -10,10 +10,12 @@ from analysis import RunDirectory
 from lammps_inputs import Scene, make_scene
 from lammps_inputs.deck import check_engine
 from narrows.papers.delhommelle_2005 import PAPER
+from narrows.papers.delhommelle_2005.state_points import UP
 from narrows.papers.delhommelle_2005.three_dimensions import string_order
 from narrows.papers.figure import Quality
 from narrows.papers.session import Plan
 from srd_driver import Simulation
+from srd_driver.sweep import Run
 
 HOURS = {"quick": 10 / 60, "full": 4.0}  # promised, on two cores
 STEP = 55e-9  # seconds of a kinetic step, a particle; measured by benchmarks/lanes.py
@@ -21,7 +23,9 @@ DEARER = {"configurational": 2.3}
 
 
 def test_every_figure_is_there() -> None:
-    assert [figure.number for figure in PAPER.figures] == [str(n) for n in range(1, 12)]
+    beyond = ["beyond-noise", "beyond-size", "beyond-hysteresis"]
+    numbers = [*(str(n) for n in range(1, 12)), *beyond]
+    assert [figure.number for figure in PAPER.figures] == numbers
     assert all(figure.caption for figure in PAPER.figures)
 
 
@@ -34,9 +38,26 @@ def test_runs_can_be_run_in_the_time_that_is_promised(quality: Quality, tmp_path
         thermostat = run.scene.model_dump()["thermostat"]
         spheres = 1.5 if run.scene.system.box.dimensions == 3 else 1.0
         seconds += run.scene.system.work * STEP * DEARER.get(thermostat, 1.0) * spheres
+    print(f"{quality}: {len(plan.runs)} runs, {seconds / 3600:.2f} hours of one core")
     assert seconds / 2 < HOURS[quality] * 3600
     named = [scene for figure in PAPER.figures for scene in figure.scenes(quality)]
     assert len(plan.runs) < len(named)  # figures share runs
+
+
+def test_full_quality_goes_up_and_down_ladders(tmp_path: Path) -> None:
+    plan = Plan(PAPER, PAPER.figures, "full", tmp_path)
+    for scene, run in plan.run_by_scene.items():
+        if run.after and "field" in scene.model_dump():
+            higher = scene.model_dump()["field"] > run.after.scene.model_dump()["field"]
+            assert higher == (scene.seed == UP)
+    chains = [len(_chain(run)) for run in plan.runs]
+    assert max(chains) > 20  # fields up, and down again
+    quick = Plan(PAPER, PAPER.figures, "quick", tmp_path)
+    assert max(len(_chain(run)) for run in quick.runs) > 4  # rates
+
+
+def _chain(run: Run) -> list[Run]:
+    return [run, *(_chain(run.after) if run.after else [])]
 
 
 @pytest.mark.skipif(not lammps_plugin.folder(), reason="the plugin is not built")

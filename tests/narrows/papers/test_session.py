@@ -15,12 +15,16 @@ from typing import Never
 import numpy as np
 import pytest
 
+import lammps_plugin
+from analysis import RunDirectory
 from narrows.papers import session
-from narrows.papers.figure import Directories, PaperFigure, Quality
+from narrows.papers.drawing import one_panel
+from narrows.papers.figure import Directories, Outcome, Paper, PaperFigure, Quality
 from narrows.papers.session import Plan, carry_out
 from srd_driver.sweep import Advance, Failure, Run, run_all
 from tests.conftest import ROOT
 from tests.narrows.papers.tiny import paper
+from tests.soft_scenes import lanes
 
 
 def plan_of(out: Path, duration: float = 3.0) -> Plan:
@@ -125,3 +129,44 @@ def test_goes_on_after_kill_9(tmp_path: Path) -> None:
         [float(line.split(",")[1]) for line in killed],
         [float(line.split(",")[1]) for line in whole],
     )
+
+
+def a_ladder(out: Path, first: float = 0.5) -> Plan:
+    """Three fields, the last of which is shown; a run does not outlive a first one of 50."""
+    common = {"duration": 0.5, "equilibration": 0.0, "thermostat": "configurational"}
+    fatal = {"time_step": 0.004, "duration": 50.0} if first == 50 else {}
+    scenes = [lanes(**(common | {"field": first} | fatal))]
+    scenes += [lanes(field=field, **common) for field in (1.0, 1.5)]
+
+    def make(directories: Directories, quality: Quality) -> Outcome:
+        assert directories[scenes[2]].path == out / "runs" / directories[scenes[2]].path.name
+        return Outcome(one_panel("x", "y")[0], {"field": [1.5]}, [])
+
+    figure = PaperFigure("1", "The last.", make, lambda quality: scenes[2:])
+    whole = Paper("ladder", "A ladder", (figure,), None, "none", lambda quality: [scenes])
+    return Plan(whole, whole.figures, "quick", out)
+
+
+@pytest.mark.skipif(not lammps_plugin.folder(), reason="the plugin is not built")
+def test_each_run_of_a_ladder_begins_as_the_one_before_ended(tmp_path: Path) -> None:
+    plan = a_ladder(tmp_path)
+    first, second, third = plan.run_by_scene.values()
+    assert (second.after, third.after, first.after) == (first, second, None)
+    assert carry_out(plan, jobs=2).left_out == []
+    for before, run in ((first, second), (second, third)):
+        told = RunDirectory(run.folder)
+        assert told.manifest.fields["start"] == str(before.folder.resolve())
+        ended = RunDirectory(before.folder).particles().velocities[-1]
+        np.testing.assert_allclose(told.particles().velocities[0], ended, atol=1e-6)
+    assert a_ladder(tmp_path).finished() == 3
+    assert a_ladder(tmp_path, first=0.6).finished() == 0  # all begin otherwise
+
+
+@pytest.mark.skipif(not lammps_plugin.folder(), reason="the plugin is not built")
+def test_a_ladder_ends_with_a_run_that_fails(tmp_path: Path) -> None:
+    plan = a_ladder(tmp_path, first=50.0)
+    done = carry_out(plan, jobs=2)
+    last = plan.run_by_scene[plan.figures[0].scenes("quick")[0]]
+    reason = "the run that it begins from has failed"
+    assert done.left_out == [f"figure 1 left out: {last.folder}: {reason}"]
+    assert not last.folder.exists()
