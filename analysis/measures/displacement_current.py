@@ -9,6 +9,8 @@ from analysis.measures.settling_speed import sampled_frames
 from analysis.measures.soft_averages import field_of
 from analysis.run_directory import RunDirectory
 
+QUANTITIES = ("current", "mobility")
+
 
 def measure(run: RunDirectory) -> Findings:
     """Means over time, by displacements: velocities just after a collision are the lowest."""
