@@ -176,6 +176,7 @@ class ReferenceEngine:
                     saved["fluid_velocities"].T,
                     saved["colloid_positions"].T,
                     saved["colloid_velocities"].T,
+                    saved["spins"].T if "spins" in saved else np.empty((0, 3)),
                 ),
             )
             engine.collisions = int(saved["collisions"])

@@ -96,7 +96,6 @@ class SuspensionEngine(ReferenceEngine):
         """The engine that `save` wrote, of the same scene."""
         engine = super().load(scene, file)
         with np.load(file) as saved:
-            engine._spins[:] = saved["spins"]
             engine._suspension.collisions = engine.collisions
             engine._suspension.pull = saved["forces"], saved["torques"]
         return engine
