@@ -27,7 +27,8 @@ from lammps_inputs.system import (
     VelocityVerlet,
 )
 
-SKIN = 0.5  # least of the neighbour list [a0]
+SKIN = 0.5  # least of the neighbour list, of colloids that feel the fluid by forces [a0]
+MOST_LISTS = 8  # built in a collision interval
 SLOW = 0.1  # drift of species that the fluid carries [a0/t0]
 
 
@@ -80,8 +81,8 @@ class Mpc(LammpsEngine):
         between = system.particle_interactions()
         yield from lammps.pairs(system)
         yield f"pair_modify {system.particle_interactions()[0].potential.pair_modify}"
-        skin = max(SKIN, 2 * max(_travel(system, each) for each in system.species))
-        yield f"neighbor {skin:.6g} bin"
+        skin = 2 * max(_travel(system, each) for each in system.species) / _lists(system)
+        yield f"neighbor {max(skin, SKIN if _fluid(system).coupling == 'force' else 0.0):.6g} bin"
         yield from _lists_at_collisions(system)
         if ghosts > skin + max(i.potential.cutoff for i in between):
             yield f"comm_modify cutoff {ghosts:.6g} # the fluid sees {_group(system)} so far"
@@ -192,9 +193,18 @@ def _group(system: System) -> str:
 
 
 def _lists_at_collisions(system: System) -> Iterator[str]:
-    """At no other step: LAMMPS would do it at those of checkpoints too, and these would show."""
+    """And at fixed steps between: LAMMPS would do it at checkpoints too, and these would show."""
     yield "# when lists are built and places wrapped shows in last digits: at each collision"
-    yield f"neigh_modify delay 0 every {system.clock.steps_per_collision} check no"
+    every = system.clock.steps_per_collision // _lists(system)
+    yield f"neigh_modify delay 0 every {every} check no"
+
+
+def _lists(system: System) -> int:
+    """Lists in a collision interval: many for a short skin where only spheres need them."""
+    if _fluid(system).coupling == "force":
+        return 1
+    steps = system.clock.steps_per_collision
+    return max(lists for lists in range(1, MOST_LISTS + 1) if steps % lists == 0)
 
 
 def _travel(system: System, species: Species) -> float:
