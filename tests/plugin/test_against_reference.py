@@ -40,8 +40,13 @@ NAMED: dict[str, tuple[str, dict[str, Any]]] = {
 CLAY: dict[str, dict[str, Any]] = {
     "claylike, cell": {"cells": 6, "density": 5.0, "volume_fraction": 0.1, "peclet": 2.0},
     "claylike, reflection, bottom": {
-        "coupling": "reflection", "cells": 12, "volume_fraction": 0.12, "peclet": 2.0,
-        "boundaries": "bottom", "shear_rate": 0.02, "potential": "hertz",
+        "coupling": "reflection",
+        "cells": 12,
+        "volume_fraction": 0.12,
+        "peclet": 2.0,
+        "boundaries": "bottom",
+        "shear_rate": 0.02,
+        "potential": "hertz",
     },
 }
 NAMED |= {case: ("claylike", fields) for case, fields in CLAY.items()}
