@@ -68,7 +68,9 @@ PARTS = {
         "mpc_cell", 20, (*variables(spheres=1155), *ALONE)
     ),
     "II, 1155 spheres with lubrication": Deck(
-        "mpc_cell", 20, variables(spheres=1155, lubrication="lubrication 14.44 0.02 0.3")
+        "mpc_cell",
+        20,
+        variables(spheres=1155, velocities="yes", lubrication="lubrication 14.44 0.02 0.3"),
     ),
 }
 

@@ -41,6 +41,7 @@ void PairDLVO::allocate()
   for (int i = 1; i <= types_; ++i)
     for (int j = 1; j <= types_; ++j) setflag[i][j] = 0;
   spheres_.resize((types_ + 1) * (types_ + 1));
+  near_.resize(spheres_.size());
 }
 
 void PairDLVO::settings(int narg, char **arg)
@@ -142,10 +143,10 @@ double PairDLVO::init_one(int i, int j)
 }
 
 // (1); so far out that it is no more than a rounding of the strength, nothing.
-double PairDLVO::Spheres::coulomb(double r) const
+inline double PairDLVO::Spheres::coulomb(double r) const
 {
   const double exponent = kappa * (r - diameter);
-  return exponent < 40 ? charge * diameter * diameter / r * std::exp(-exponent) : 0.0;
+  return exponent < 40 ? charge * diameter * diameter / r * mpc::exponential(-exponent) : 0.0;
 }
 
 // (1) and (2).
@@ -156,11 +157,11 @@ double PairDLVO::Spheres::dlvo_energy(double r) const
   return coulomb(r) - hamaker / 12 * (ratio / (1 - ratio) + ratio + 2 * std::log1p(-ratio));
 }
 
-double PairDLVO::Spheres::dlvo_force(double r) const
+inline double PairDLVO::Spheres::dlvo_force(double r) const
 {
   const double d2 = diameter * diameter, gap = r * r - d2;
-  const double repulsion = charge > 0 ? coulomb(r) * (1 / r + kappa) : 0.0;
-  return repulsion - hamaker / 6 * d2 * d2 * d2 / (r * r * r * gap * gap);
+  const double repulsion = coulomb(r) * (1 / r + kappa);
+  return hamaker > 0 ? repulsion - hamaker / 6 * d2 * d2 * d2 / (r * r * r * gap * gap) : repulsion;
 }
 
 // With the parabola -depth + stiffness (r - d)^2 / 2 from contact to the joint, and (3) below contact.
@@ -172,15 +173,13 @@ double PairDLVO::Spheres::energy(double r) const
   return outer + hertz * overlap * overlap * std::sqrt(overlap) - shift;
 }
 
-double PairDLVO::Spheres::force(double r) const
+// Without branches, for loops over many.
+inline double PairDLVO::Spheres::force(double r) const
 {
-  double force;
-  if (hamaker > 0)
-    force = r < joint ? -stiffness * std::max(r - diameter, 0.0) : dlvo_force(r);
-  else
-    force = coulomb(r) * (1 / r + kappa);
-  if (r < diameter) force += 2.5 * hertz * (diameter - r) * std::sqrt(diameter - r);
-  return force;
+  const double outer = dlvo_force(r);
+  const double overlap = r < diameter ? diameter - r : 0, gap = r < diameter ? 0 : r - diameter;
+  const double force = r < joint ? -stiffness * gap : outer;
+  return force + 2.5 * hertz * overlap * std::sqrt(overlap);
 }
 
 // The innermost gap h with V(h) + depth = h V'(h) / 2: there a parabola from the depth at contact has
@@ -206,91 +205,150 @@ void PairDLVO::Spheres::join()
 
 // Of the relative velocity along the line of centres: lubrication (4), largest in contact and zero
 // from the farthest gap on, and damping (6 corrected).
-double PairDLVO::Spheres::normal_friction(double r) const
+inline double PairDLVO::Spheres::normal_friction(double r) const
 {
-  const double gap = r - diameter;
-  double friction = 0;
-  if (viscosity > 0 && gap < farthest) {
-    const double reduced = 0.25 * diameter;    // (5)
-    friction = 6 * M_PI * viscosity * reduced * reduced *
-        (1 / (std::max(gap, 0.0) + closest) - 1 / (farthest + closest));
-  }
-  if (gap < 0) friction += damping * std::sqrt(-gap);
-  return friction;
+  const double gap = r < diameter ? 0 : r - diameter, overlap = r < diameter ? diameter - r : 0;
+  const double reduced = 0.25 * diameter;    // (5)
+  const double squeezed = 6 * M_PI * viscosity * reduced * reduced *
+      (1 / (gap + closest) - 1 / (farthest + closest));
+  return (gap < farthest ? squeezed : 0) + damping * std::sqrt(overlap);
 }
 
 void PairDLVO::compute(int eflag, int vflag)
 {
   ev_init(eflag, vflag);
-  double **x = atom->x, **v = atom->v, **f = atom->f;
-  double **omega = atom->omega, **torque = atom->torque;
+  double **x = atom->x;
   const int *type = atom->type;
-  const tagint *tag = atom->tag;
-  const int nlocal = atom->nlocal, newton = force->newton_pair;
-  const mpc::CounterRandom random{seed_, static_cast<std::uint64_t>(update->ntimestep)};
-  const double noise = std::sqrt(2 * temperature_ / update->dt);
-
   for (int ii = 0; ii < list->inum; ++ii) {
-    const int i = list->ilist[ii];
+    const int i = list->ilist[ii], *neighbors = list->firstneigh[i];
+    const double xi = x[i][0], yi = x[i][1], zi = x[i][2];
+    Pairs *of_type = &near_[type[i] * (types_ + 1)];
+    const double *range = cutsq[type[i]];
     for (int jj = 0; jj < list->numneigh[i]; ++jj) {
-      const int j = list->firstneigh[i][jj] & NEIGHMASK;
-      Vector<3> e;    // from j to i
-      for (int a = 0; a < 3; ++a) e[a] = x[i][a] - x[j][a];
-      const double r2 = mpc::square<3>(e);
-      const int itype = type[i], jtype = type[j];
-      if (r2 >= cutsq[itype][jtype]) continue;
-      const auto &spheres = of(itype, jtype);
-      const double r = std::sqrt(r2), inverse = 1 / r;
-      for (double &component : e) component *= inverse;
-
-      double along = r < spheres.cutoff ? spheres.force(r) : 0;
-      Vector<3> pull{};
-      const double friction = dissipates_ ? spheres.normal_friction(r) : 0;
-      const bool rubbing = spheres.friction > 0 && r < spheres.diameter;
-      if (friction > 0 || rubbing) {
-        Vector<3> relative;
-        for (int a = 0; a < 3; ++a) relative[a] = v[i][a] - v[j][a];
-        double approach = 0;
-        for (int a = 0; a < 3; ++a) approach += relative[a] * e[a];
-        std::array<double, 4> z{};
-        if (temperature_ > 0) {
-          const auto [low, high] = std::minmax(tag[i], tag[j]);
-          z = mpc::normals<4>(random.words(mpc::Stream::Pair, low, high));
-          if (tag[i] != low)    // across the line of centres; along it e has another sign
-            for (int k = 1; k < 4; ++k) z[k] = -z[k];
-        }
-        along += noise * std::sqrt(friction) * z[0] - friction * approach;
-        if (rubbing) {
-          // of the surfaces where they touch, half way between the centres
-          Vector<3> spin, turn;
-          for (int a = 0; a < 3; ++a) spin[a] = 0.5 * r * (omega[i][a] + omega[j][a]);
-          turn = mpc::cross(spin, e);
-          const double strength = noise * std::sqrt(spheres.friction);
-          double normal = 0;
-          for (int a = 0; a < 3; ++a) {
-            pull[a] = strength * z[a + 1] - spheres.friction * (relative[a] - turn[a]);
-            normal += pull[a] * e[a];
-          }
-          for (int a = 0; a < 3; ++a) pull[a] -= normal * e[a];
-          const auto twist = mpc::torque(e, pull);
-          for (int a = 0; a < 3; ++a) {
-            torque[i][a] -= 0.5 * r * twist[a];
-            if (newton || j < nlocal) torque[j][a] -= 0.5 * r * twist[a];
-          }
-        }
-      }
-      for (int a = 0; a < 3; ++a) {
-        pull[a] += along * e[a];
-        f[i][a] += pull[a];
-        if (newton || j < nlocal) f[j][a] -= pull[a];
-      }
-      if (!evflag) continue;
-      const double energy = eflag && r < spheres.cutoff ? spheres.energy(r) : 0;
-      ev_tally_xyz(i, j, nlocal, newton, energy, 0.0, pull[0], pull[1], pull[2],
-                   r * e[0], r * e[1], r * e[2]);
+      const int j = neighbors[jj] & NEIGHMASK;
+      Pairs &pairs = of_type[type[j]];
+      const int k = pairs.count;
+      const double ex = xi - x[j][0], ey = yi - x[j][1], ez = zi - x[j][2];
+      const double r2 = ex * ex + ey * ey + ez * ez;
+      pairs.i[k] = i;
+      pairs.j[k] = j;
+      pairs.x[k] = ex;
+      pairs.y[k] = ey;
+      pairs.z[k] = ez;
+      pairs.r[k] = r2;
+      pairs.count += r2 < range[type[j]];    // without a branch: who is near follows no pattern
+      if (pairs.count == Pairs::MOST) act(of(type[i], type[j]), pairs, eflag);
     }
   }
+  for (std::size_t types = 0; types < near_.size(); ++types)
+    if (near_[types].count > 0) act(spheres_[types], near_[types], eflag);
   if (vflag_fdotr) virial_fdotr_compute();
+}
+
+// The forces of all pairs gathered.
+void PairDLVO::act(const Spheres &given, Pairs &pairs, int eflag)
+{
+  const Spheres spheres = given;
+  const int count = pairs.count;
+  for (int k = 0; k < count; ++k) {
+    const double r = std::sqrt(pairs.r[k]), inverse = 1 / r;
+    pairs.x[k] *= inverse;
+    pairs.y[k] *= inverse;
+    pairs.z[k] *= inverse;
+    pairs.r[k] = r;
+    const double force = spheres.force(r);
+    pairs.along[k] = r < spheres.cutoff ? force : 0;
+  }
+  if (dissipates_) dissipate(spheres, pairs);
+  for (int k = 0; k < count; ++k) {
+    const double e[3] = {pairs.x[k], pairs.y[k], pairs.z[k]}, r = pairs.r[k];
+    const double energy = eflag && r < spheres.cutoff ? spheres.energy(r) : 0;
+    const double f = pairs.along[k];
+    push(pairs.i[k], pairs.j[k], {f * e[0], f * e[1], f * e[2]}, e, r, energy);
+  }
+  pairs.count = 0;
+}
+
+// Friction along the line of centres, and of surfaces in contact, with the noise that they demand.
+void PairDLVO::dissipate(const Spheres &spheres, Pairs &pairs)
+{
+  const int count = pairs.count;
+  for (int k = 0; k < count; ++k) pairs.friction[k] = spheres.normal_friction(pairs.r[k]);
+  const bool rough = spheres.friction > 0;
+  Pairs::Each<int> near;
+  int found = 0;
+  for (int k = 0; k < count; ++k) {
+    near[found] = k;
+    found += (pairs.friction[k] > 0) | (rough & (pairs.r[k] < spheres.diameter));
+  }
+
+  const mpc::CounterRandom random{seed_, static_cast<std::uint64_t>(update->ntimestep)};
+  const tagint *tag = atom->tag;
+  Pairs::Each<mpc::Words> words;
+  Pairs::Each<double> first, second, z;
+  z.fill(0);
+  if (temperature_ > 0) {
+    for (int n = 0; n < found; ++n) {
+      const auto [low, high] = std::minmax(tag[pairs.i[near[n]]], tag[pairs.j[near[n]]]);
+      words[n] = random.words(mpc::Stream::Pair, low, high);
+      first[n] = mpc::uniform(words[n][0]);
+      second[n] = mpc::uniform(words[n][1]);
+    }
+    for (int n = 0; n < found; ++n) z[n] = mpc::normal_pair(first[n], second[n])[0];
+  }
+  double **v = atom->v;
+  const double noise = std::sqrt(2 * temperature_ / update->dt);
+  for (int n = 0; n < found; ++n) {
+    const int k = near[n];
+    const double *vi = v[pairs.i[k]], *vj = v[pairs.j[k]];
+    const double approach = (vi[0] - vj[0]) * pairs.x[k] + (vi[1] - vj[1]) * pairs.y[k] +
+        (vi[2] - vj[2]) * pairs.z[k];
+    pairs.along[k] += noise * std::sqrt(pairs.friction[k]) * z[n] - pairs.friction[k] * approach;
+    if (rough && pairs.r[k] < spheres.diameter)
+      rub(spheres, pairs, k, temperature_ > 0 ? mpc::normals<4>(words[n]) : Normals{});
+  }
+}
+
+// Friction of the surfaces where they touch, half way between the centres; of the noise the last
+// three.
+void PairDLVO::rub(const Spheres &spheres, const Pairs &pairs, int k, const Normals &z)
+{
+  const int i = pairs.i[k], j = pairs.j[k];
+  const double *vi = atom->v[i], *vj = atom->v[j], *oi = atom->omega[i], *oj = atom->omega[j];
+  const Vector<3> e{pairs.x[k], pairs.y[k], pairs.z[k]};
+  const double arm = 0.5 * pairs.r[k];
+  const Vector<3> spin{arm * (oi[0] + oj[0]), arm * (oi[1] + oj[1]), arm * (oi[2] + oj[2])};
+  const auto turn = mpc::cross(spin, e);
+  const double noise = std::sqrt(2 * temperature_ / update->dt * spheres.friction);
+  const double sign = atom->tag[i] < atom->tag[j] ? 1 : -1;    // along, e has it
+  Vector<3> pull;
+  double normal = 0;
+  for (int a = 0; a < 3; ++a) {
+    pull[a] = sign * noise * z[a + 1] - spheres.friction * (vi[a] - vj[a] - turn[a]);
+    normal += pull[a] * e[a];
+  }
+  for (int a = 0; a < 3; ++a) pull[a] -= normal * e[a];
+  const auto twist = mpc::torque(e, pull);
+  double **torque = atom->torque;
+  for (int a = 0; a < 3; ++a) {
+    torque[i][a] -= arm * twist[a];
+    if (force->newton_pair || j < atom->nlocal) torque[j][a] -= arm * twist[a];
+  }
+  push(i, j, pull, e.data(), pairs.r[k], 0);
+}
+
+inline void PairDLVO::push(int i, int j, const Vector<3> &pull, const double *e, double r,
+                           double energy)
+{
+  double **f = atom->f;
+  const int newton = force->newton_pair;
+  for (int a = 0; a < 3; ++a) {
+    f[i][a] += pull[a];
+    if (newton || j < atom->nlocal) f[j][a] -= pull[a];
+  }
+  if (evflag)
+    ev_tally_xyz(i, j, atom->nlocal, newton, energy, 0.0, pull[0], pull[1], pull[2], r * e[0],
+                 r * e[1], r * e[2]);
 }
 
 double PairDLVO::single(int, int, int itype, int jtype, double rsq, double, double, double &fforce)

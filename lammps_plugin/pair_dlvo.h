@@ -5,6 +5,7 @@
 
 #include "pair.h"
 
+#include <array>
 #include <cstdint>
 #include <vector>
 
@@ -22,6 +23,8 @@ class PairDLVO : public Pair {
   double single(int, int, int, int, double, double, double, double &) override;
 
  private:
+  using Normals = std::array<double, 4>;
+
   struct Spheres {
     double diameter = 0;
     double charge = 0, kappa = 0;     // of (1): V = charge d^2 / r exp(-kappa (r - d))
@@ -45,11 +48,29 @@ class PairDLVO : public Pair {
     double normal_friction(double r) const;
   };
 
+  // Pairs of two types within their range, component by component: loops over them are vectorised.
+  struct Pairs {
+    static constexpr int MOST = 512;    // their state stays in the caches
+    template <class Value> using Each = std::array<Value, MOST>;
+
+    int count = 0;
+    Each<int> i, j;
+    Each<double> x, y, z, r;    // from j to i: the way and its square, then direction and length
+    Each<double> along;         // force on i in that direction
+    Each<double> friction;      // of the relative velocity along it
+  };
+
   void allocate();
+  void act(const Spheres &, Pairs &, int eflag);
+  void dissipate(const Spheres &, Pairs &);
+  void rub(const Spheres &, const Pairs &, int k, const Normals &z);
+  void push(int i, int j, const std::array<double, 3> &pull, const double *e, double r,
+            double energy);
   Spheres &of(int itype, int jtype) { return spheres_[itype * (types_ + 1) + jtype]; }
 
   int types_ = 0;
   std::vector<Spheres> spheres_;
+  std::vector<Pairs> near_;    // of each two types
   double cutoff_ = 0, temperature_ = 0;
   std::uint64_t seed_ = 0;
   bool dissipates_ = false, rubs_ = false;

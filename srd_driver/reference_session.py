@@ -5,12 +5,12 @@ from pathlib import Path
 import numpy as np
 
 from lammps_inputs import Scene
-from lammps_inputs.system import FLUID_AVERAGES, FLUID_PROFILE, TRAJECTORY, Array
+from lammps_inputs.system import FLUID_PROFILE, TRAJECTORY, Array
 from run_files.fluid_file import Fluid
 from run_files.progress import Progress
 from run_files.writing import replacing
 from srd_driver.dump import write_frame
-from srd_driver.reference import ReferenceEngine
+from srd_driver.reference import ReferenceEngine, SuspensionEngine
 
 
 class ReferenceSession:
@@ -22,12 +22,15 @@ class ReferenceSession:
     def __init__(self, scene: Scene, directory: Path, progress: Progress) -> None:
         self._scene = scene
         self._directory = directory
+        solvent = scene.system.solvent
+        by_force = solvent is None or solvent.coupling == "force"
+        engine = ReferenceEngine if by_force else SuspensionEngine
+        (self._table,) = (each for each in scene.system.outputs if each.kind == "table")
         if progress.checkpoint:
-            self._engine = ReferenceEngine.load(scene, directory / progress.checkpoint)
+            self._engine = engine.load(scene, directory / progress.checkpoint)
         else:
-            self._engine = ReferenceEngine(scene)
-            for name, title in _TITLES.items():
-                (directory / name).write_text(title, encoding="utf-8")
+            self._engine = engine(scene)
+            self._write_titles()
         self.step = progress.step
         self._system, self._clock = scene.system, scene.system.clock
         self._box = scene.system.box
@@ -69,7 +72,7 @@ class ReferenceSession:
         looks = self._clock.looks
         every = self._clock.look_steps // self._clock.steps_per_collision
         count, momentum, squares = np.zeros((3, self._bins))
-        temperature = mean_velocity = 0.0
+        averages = np.zeros(len(self._table.columns))
         for _ in range(looks):
             self._engine.advance(every)
             velocity = self._engine.fluid_velocities
@@ -78,8 +81,8 @@ class ReferenceSession:
             count += np.bincount(layer, minlength=self._bins)
             momentum += np.bincount(layer, velocity[:, 0], self._bins)
             squares += np.bincount(layer, (velocity**2).sum(axis=1), self._bins)
-            temperature += self._engine.fluid_temperature() / looks
-            mean_velocity += float(self._engine.mean_velocity()[0]) / looks
+            values = self._engine.averages()
+            averages += np.array([values[column] for column in self._table.columns]) / looks
         self.step += self._clock.sample_steps
 
         depth = self._width / self._bins
@@ -98,8 +101,8 @@ class ReferenceSession:
         with (self._directory / FLUID_PROFILE.file).open("a", encoding="utf-8") as file:
             file.write(f"{self.step} {self._bins} {count.sum() / looks:g}\n")
             np.savetxt(file, columns, fmt="  %d %g %g %g %.6g %.6g")
-        with (self._directory / FLUID_AVERAGES.file).open("a", encoding="utf-8") as file:
-            file.write(f"{self.step} {temperature:.8g} {mean_velocity:.8g}\n")
+        with (self._directory / self._table.file).open("a", encoding="utf-8") as file:
+            file.write(" ".join([str(self.step), *(f"{value:.8g}" for value in averages)]) + "\n")
         self._write_frame()
 
     def _write_frame(self) -> None:
@@ -112,15 +115,18 @@ class ReferenceSession:
                 (engine.colloid_positions, engine.colloid_velocities, engine.colloid_images),
             )
 
-
-_TITLES = {
-    FLUID_PROFILE.file: (
-        "# Chunk-averaged data for fix profile and group fluid\n"
-        "# Timestep Number-of-chunks Total-count\n"
-        "# Chunk Coord1 Ncount density/number vx temp\n"
-    ),
-    FLUID_AVERAGES.file: (
-        "# Time-averaged data for fix observables\n"
-        "# TimeStep v_fluid_temperature v_mean_velocity_x\n"
-    ),
-}
+    def _write_titles(self) -> None:
+        columns = " ".join(f"v_{column}" for column in self._table.columns)
+        for name, title in (
+            (
+                FLUID_PROFILE.file,
+                "# Chunk-averaged data for fix profile and group fluid\n"
+                "# Timestep Number-of-chunks Total-count\n"
+                "# Chunk Coord1 Ncount density/number vx temp\n",
+            ),
+            (
+                self._table.file,
+                f"# Time-averaged data for fix observables\n# TimeStep {columns}\n",
+            ),
+        ):
+            (self._directory / name).write_text(title, encoding="utf-8")

@@ -27,7 +27,9 @@ from lammps_inputs.system import (
     VelocityVerlet,
 )
 
-SKIN, LONGEST_SKIN = 0.5, 0.85  # of the neighbour list [a0]
+SKIN = 0.5  # least of the neighbour list, of colloids that feel the fluid by forces [a0]
+LONGEST_SKIN = 0.85  # of others [a0]
+USUAL_LISTS = 8  # most that are built in a collision interval, unless the skin asks for more
 SLOW = 0.1  # drift of species that the fluid carries, at least [a0/t0]
 FLIGHTS = 10  # collision times of free fall that such a drift comes to, at most
 
@@ -86,7 +88,7 @@ class Mpc(LammpsEngine):
         yield f"pair_modify {system.particle_interactions()[0].potential.pair_modify}"
         travel = 2 * max(_travel(system, each) for each in system.species)
         lists = _lists(system, travel)
-        skin = max(SKIN, travel / lists)
+        skin = max(travel / lists, SKIN if _fluid(system).coupling == "force" else 0.0)
         yield f"neighbor {skin:.6g} bin"
         yield from _lists_at_collisions(system, lists)
         if ghosts > skin + max(i.potential.cutoff for i in between):
@@ -212,15 +214,17 @@ def _lists(system: System, travel: float) -> int:
 
     Once where the fluid sees species between collisions.
     """
-    steps = system.clock.steps_per_collision
-    if _fluid(system).coupling != "cell":
+    if _fluid(system).coupling == "force":
         return 1
-    divisors = (number for number in range(1, steps + 1) if steps % number == 0)
-    return next((number for number in divisors if travel / number <= LONGEST_SKIN), steps)
+    steps = system.clock.steps_per_collision
+    divisors = [number for number in range(1, steps + 1) if steps % number == 0]
+    usual = max(number for number in divisors if number <= USUAL_LISTS)
+    enough = next((number for number in divisors if travel / number <= LONGEST_SKIN), steps)
+    return max(usual, enough)
 
 
 def _lists_at_collisions(system: System, lists: int = 1) -> Iterator[str]:
-    """At fixed steps: else LAMMPS would do it at those of checkpoints, and these would show."""
+    """And at fixed steps between: LAMMPS would do it at checkpoints too, and these would show."""
     yield "# when lists are built and places wrapped shows in last digits: at each collision"
     steps = system.clock.steps_per_collision // lists
     yield f"neigh_modify delay 0 every {steps} check no"

@@ -3,68 +3,70 @@
 #pragma once
 
 #include "grid.h"
+#include "memory.h"
 
-#include <vector>
+#include <algorithm>
+#include <limits>
 
 namespace mpc {
 
 template <int D> class ColloidCells {
  public:
   struct Entry {
-    int colloid, next;
+    int colloid;
+    float square;    // distance of its place from the cell, squared; not more
   };
 
   void begin(const Grid<D> &grid)
   {
     grid_ = grid;
-    head_.assign(grid.cells(), -1);
+    start_.assign(grid.cells() + 1, 0);
+    nearest_.assign(grid.cells(), std::numeric_limits<float>::infinity());
     only_.assign(grid.cells(), NOBODY);
-    entries_.clear();
+    stretches_.clear();
+    along_.clear();
   }
 
   // Enter a colloid at all cells that come closer to a place than a radius.
   void enter(int colloid, const Vector<D> &x, double radius)
   {
-    enter(colloid, x, radius, [](int, double) {});
-  }
-
-  // The same, visiting each cell with its square distance from the place.
-  template <class Visit>
-  void enter(int colloid, const Vector<D> &x, double radius, const Visit &visit)
-  {
-    std::array<int, D> first;
+    std::array<int, D> first, last;
     for (int a = 0; a < D; ++a) {
       const auto row = [&](double at) {
         return static_cast<int>(std::floor(at / grid_.edge + grid_.shift[a]));
       };
       first[a] = std::max(row(x[a] - radius), grid_.lower[a]);
-      const int last = std::min(row(x[a] + radius), grid_.upper[a] - 1);
-      if (first[a] > last) return;
-      squares_[a].clear();
-      for (int r = first[a]; r <= last; ++r) {
-        const double beyond = std::abs(x[a] - grid_.centre(a, r)) - 0.5 * grid_.edge * (1 + 1e-9);
-        squares_[a].push_back(beyond > 0 ? beyond * beyond : 0.0);
+      last[a] = std::min(row(x[a] + radius), grid_.upper[a] - 1);
+      if (first[a] > last[a]) return;
+      auto &squares = squares_[a];
+      squares.clear();
+      for (int r = first[a]; r <= last[a]; ++r) {
+        const double beyond = std::abs(x[a] - grid_.centre(a, r)) - 0.5 * grid_.edge * (1 + ROUNDING);
+        squares.push_back(static_cast<float>(beyond > 0 ? beyond * beyond * (1 - ROUNDING) : 0.0));
       }
     }
-    const double most = radius * radius;
+    const float most = static_cast<float>(radius * radius * (1 + ROUNDING));
     const auto &along = squares_[0];
-    const int length = static_cast<int>(along.size());
+    const int length = static_cast<int>(along.size()), kept = static_cast<int>(along_.size());
+    along_.insert(along_.end(), along.begin(), along.end());
     std::array<int, D> rows{};    // beyond the first, along all axes but the first
     for (;;) {
-      double across = 0;
+      float across = 0;
       int cell = 0;
       for (int a = D - 1; a > 0; --a) {
         across += squares_[a][rows[a]];
         cell = (cell + first[a] + rows[a] - grid_.lower[a]) * grid_.extent(a - 1);
       }
       cell += first[0] - grid_.lower[0];
-      for (int r = 0; r < length; ++r) {
-        const double distance = across + along[r];
-        if (!(distance < most)) continue;
-        only_[cell + r] = head_[cell + r] < 0 ? colloid : SEVERAL;
-        entries_.push_back({colloid, head_[cell + r]});
-        head_[cell + r] = static_cast<int>(entries_.size()) - 1;
-        visit(cell + r, distance);
+      int low = 0, high = length;
+      while (low < high && !(across + along[low] < most)) ++low;
+      while (low < high && !(across + along[high - 1] < most)) --high;
+      if (low < high) {
+        stretches_.push_back({colloid, cell + low, high - low, kept + low, across});
+        for (int r = low; r < high; ++r)
+          only_[cell + r] = ++start_[cell + r] == 1 ? colloid : SEVERAL;
+        for (int r = low; r < high; ++r)
+          nearest_[cell + r] = std::min(nearest_[cell + r], across + along[r]);
       }
       int a = 1;
       while (a < D && ++rows[a] == static_cast<int>(squares_[a].size())) {
@@ -75,25 +77,62 @@ template <int D> class ColloidCells {
     }
   }
 
-  bool any(int cell) const { return head_[cell] >= 0; }
+  // When all are entered. The lists of all cells, one after the other.
+  void finish()
+  {
+    int total = 0;
+    for (int &start : start_) start = total += start;
+    entries_.resize(total);
+    for (auto stretch = stretches_.rbegin(); stretch != stretches_.rend(); ++stretch)
+      for (int r = 0; r < stretch->length; ++r)
+        entries_[--start_[stretch->cell + r]] = {stretch->colloid,
+                                                 stretch->across + along_[stretch->along + r]};
+  }
+
+  bool any(int cell) const { return nearest(cell) < std::numeric_limits<float>::infinity(); }
 
   // The colloid of a cell that has just one, else one of these.
   static constexpr int NOBODY = -1, SEVERAL = -2;
   int only(int cell) const { return only_[cell]; }
 
+  // Square distance from a cell to the nearest place.
+  float nearest(int cell) const { return nearest_[cell]; }
+
+  // Ask for the list of a cell, which is far from those of others.
+  void prefetch(int cell) const { __builtin_prefetch(entries_.data() + start_[cell]); }
+
+  // Colloids whose places come closer to a cell than a distance.
+  template <class Visit> void each(int cell, double distance, const Visit &visit) const
+  {
+    const double most = distance * distance;
+    for (int e = start_[cell]; e < start_[cell + 1]; ++e)
+      if (entries_[e].square < most) visit(entries_[e].colloid);
+  }
+
   template <class Visit> void each(int cell, const Visit &visit) const
   {
-    for (int e = head_[cell]; e >= 0; e = entries_[e].next) visit(entries_[e].colloid);
+    for (int e = start_[cell]; e < start_[cell + 1]; ++e) visit(entries_[e].colloid);
   }
 
   const Grid<D> &grid() const { return grid_; }    // as it was
 
  private:
+  static constexpr double ROUNDING = 1e-6;    // more than that of a float
+
+  // Cells side by side along the first axis that a colloid is entered at.
+  struct Stretch {
+    int colloid, cell, length, along;
+    float across;
+  };
+
   Grid<D> grid_{{}, {}, 1.0};
-  std::vector<int> head_;    // of each cell, its list of entries; -1 for none
-  std::vector<int> only_;
-  std::vector<Entry> entries_;
-  std::array<std::vector<double>, D> squares_;    // of distances along each axis, by row
+  Array<int> start_;    // of each cell in the entries
+  Array<float> nearest_;
+  Array<int> only_;
+  Array<Entry> entries_;
+  std::vector<Stretch> stretches_;
+  std::vector<float> along_;                     // square distances along the first axis
+  std::array<std::vector<float>, D> squares_;    // along each axis, by row
 };
 
 }    // namespace mpc

@@ -5,8 +5,8 @@
 //   at every MD step    at the interval's beginning it takes the particles that it will move itself;
 //                       all others fly free through the whole interval at once. At its end it gives
 //                       them back (force_coupling.h)
-//   after the flight    particles that may have met a colloid on their way are held back, and taken
-//                       from where they met it on another way (reflection_coupling.h)
+//   after the flight    particles that have met a colloid on their way are taken from where they met
+//                       it on another way (reflection_coupling.h)
 //   in the collision    colloids are particles of their cells (cell_coupling.h)
 //
 // What it does to colloids is forces and torques in the first, impulses of both in the others.
@@ -68,17 +68,17 @@ template <int D> class Coupling {
   virtual void step(double /*time*/, const Colloids &, std::vector<Push<D>> & /*on_colloids*/) {}
   virtual void give_back(Fluid<D> &) {}
 
-  // After the flight. The grid of the next collision; for each of its cells, the square of the speed
-  // from which particles are candidates; and which of the candidates are held back.
+  // After the flight, which then is at the interval's end. Colloids as they are now, and the grid of
+  // the next collision; then which of the particles begin ... end - 1 have met a colloid, and
+  // whether one that has come from another process has: each is remembered; then, when all processes
+  // know of all of them, what the first contact did to each, in this order; and again what the next
+  // one did, until none touches a colloid any more.
   virtual bool after_flight() const { return false; }
-  virtual const std::vector<double> &hold(const Grid<D> &) { return slowest_; }
-  virtual bool holds(const Fluid<D> &, int /*index*/, int /*cell*/) const { return false; }
-
-  // Colloids as they are now; then all particles that were held, with their cell; then, when all
-  // processes know of all of them, again for each, until none touches a colloid any more.
-  virtual void meet(const Colloids &, const CounterRandom &) {}
+  virtual void meet(const Grid<D> &, const Colloids &, const CounterRandom &) {}
+  virtual void watch(const Fluid<D> &, int /*begin*/, int /*end*/, std::vector<int> & /*met*/) {}
   virtual void announce(const Flight<D> &, int /*cell*/) {}
   virtual void decide(Processes &) {}
+  virtual bool reflect_next(Flight<D> &) { return false; }
   virtual bool reflect(Flight<D> &, int /*cell*/) { return false; }
 
   // In the collision, in this process's cells: join their sums, then do as their turns say.
@@ -91,7 +91,6 @@ template <int D> class Coupling {
 
  protected:
   std::vector<int> taken_;
-  std::vector<double> slowest_;
   std::vector<Push<D>> impulses_;
 };
 

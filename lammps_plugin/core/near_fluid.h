@@ -70,6 +70,7 @@ template <int D> class NearFluid {
       for (int a = 0; a < D; ++a) centres_[a].push_back(colloids[c].x[a]);
       cells_.enter(c, colloids[c].x, pairing);    // at all cells with what could be paired with it
     }
+    cells_.finish();
   }
 
   void take(const Fluid<D> &fluid, int begin, int end)

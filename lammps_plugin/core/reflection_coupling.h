@@ -52,81 +52,132 @@ template <int D> class ReflectionCoupling : public Coupling<D> {
     return reach + way_;
   }
 
-  void begin(const Grid<D> &, const std::vector<Colloid<D>> &colloids, double speed) override
-  {
-    colloids_ = colloids;
-    allowance_ = speed * interval_;
-    find_radii();
-  }
-
   bool after_flight() const override { return true; }
 
-  // From a cell beside a colloid that is looked at in meet, a particle so slow cannot have met it.
-  const std::vector<double> &hold(const Grid<D> &grid) override
+  void meet(const Grid<D> &grid, const std::vector<Colloid<D>> &colloids,
+            const CounterRandom &random) override
   {
-    cells_.begin(grid);
-    for (int a = 0; a < D; ++a) per_length_[a] = 1 / grid.box[a];
-    slowest_.assign(grid.cells(), HUGE_VAL);
-    const double gain = 0.5 * std::sqrt(square<D>(field_)) * interval_;
-    for (std::size_t c = 0; c < colloids_.size(); ++c) {
-      const double touching = radius_[c] + allowance_;
-      cells_.enter(static_cast<int>(c), colloids_[c].x, touching + way_, [&](int cell, double square) {
-        const double way = std::max(std::sqrt(square) - touching, 0.0);
-        const double speed = std::max(way / interval_ - gain, 0.0);
-        slowest_[cell] = std::min(slowest_[cell], speed * speed);
-      });
-    }
-    return slowest_;
-  }
-
-  // Whether a particle may come to a colloid, which moves no further than its allowance.
-  bool holds(const Fluid<D> &fluid, int i, int cell) const override
-  {
-    const auto particle = fluid.particle(i);
-    Vector<D> way;
-    double square_way = 0;
-    for (int a = 0; a < D; ++a) {
-      way[a] = interval_ * (particle.v[a] - 0.5 * interval_ * field_[a]);
-      square_way += way[a] * way[a];
-    }
-    bool near = false;
-    cells_.each(cell, [&](int c) {
-      const auto from = separation(particle.x, colloids_[c]);
-      double back = 0;
-      for (int a = 0; a < D; ++a) back += from[a] * way[a];
-      double part = square_way > 0 ? std::clamp(back / square_way, 0.0, 1.0) : 0.0;
-      if (placement_ == Placement::Nearest) part = 0;
-      double closest = 0;
-      for (int a = 0; a < D; ++a) {
-        const double distance = from[a] - part * way[a];
-        closest += distance * distance;
-      }
-      const double touching = radius_[c] * (1 + 1e-9) + allowance_;
-      near |= closest < touching * touching;
-    });
-    return near;
-  }
-
-  // The host may show other images now, after it moved colloids between processes.
-  void meet(const std::vector<Colloid<D>> &colloids, const CounterRandom &random) override
-  {
-    bool same = colloids.size() == colloids_.size();
-    for (std::size_t c = 0; same && c < colloids.size(); ++c) {
-      const auto from = separation(colloids[c].x, colloids_[c], false);
-      same = colloids[c].id == colloids_[c].id && square<D>(from) <= allowance_ * allowance_;
-    }
     colloids_ = colloids;
-    if (!same) enter_anew();
     random_ = random;
+    spheres_.clear();
+    largest_ = fastest_ = 0;
+    for (const auto &colloid : colloids) {
+      spheres_.push_back({colloid.x, colloid.v, radii_.at(colloid.type)});
+      largest_ = std::max(largest_, spheres_.back().radius * (1 + 1e-9));
+      fastest_ = std::max(fastest_, square<D>(colloid.v));
+    }
+    fastest_ = std::sqrt(fastest_) + 0.5 * std::sqrt(square<D>(field_)) * interval_;
+    for (int a = 0; a < D; ++a) per_length_[a] = grid.periodic[a] ? 1 / grid.box[a] : 0.0;
+    cells_.begin(grid);
+    for (std::size_t c = 0; c < spheres_.size(); ++c)
+      cells_.enter(static_cast<int>(c), spheres_[c].x, distance(0, interval_) + way_);
+    cells_.finish();
     sums_.assign(WIDTH * colloids.size(), 0.0);
     impulses_.assign(colloids.size(), {});
+    announced_.clear();
+    next_ = 0;
   }
 
-  void announce(const Flight<D> &flight, int cell) override
+  void watch(const Fluid<D> &fluid, int begin, int end, std::vector<int> &met) override
   {
+    const int count = end - begin;
+    listed_.resize(count);
+    within_.resize(count);
+    for (int k = 0; k < count; ++k) {
+      double square = 0;
+      for (int a = 0; a < D; ++a) square += fluid.v[a][begin + k] * fluid.v[a][begin + k];
+      const double within = distance(std::sqrt(square), interval_);
+      within_[k] = within * within;
+    }
+    int listed = 0;    // a list without branches: who is in it follows no pattern
+    for (int k = 0; k < count; ++k) {
+      const int cell = fluid.cell[begin + k];
+      listed_[listed] = begin + k;
+      listed += (cell >= 0) & (within_[k] > cells_.nearest(cell >= 0 ? cell : 0));
+    }
+    for (int k = 0; k < listed; ++k) {
+      const int i = listed_[k];
+      cells_.prefetch(fluid.cell[listed_[std::min(k + AHEAD, listed - 1)]]);
+      const Flight<D> flight{fluid.particle(i), interval_, 0};
+      const auto contact = find(flight, fluid.cell[i]);
+      if (contact.colloid < 0) continue;
+      met.push_back(i);
+      remember(flight, contact);
+    }
+  }
+
+  void announce(const Flight<D> &flight, int cell) override { remember(flight, find(flight, cell)); }
+
+  // The velocities of the surfaces.
+  void decide(Processes &processes) override
+  {
+    processes.sum_images(sums_, WIDTH);
+    surfaces_.clear();
+    for (std::size_t c = 0; c < colloids_.size(); ++c) {
+      const double *sum = &sums_[WIDTH * c];
+      surfaces_.push_back(*sum > 0 ? solve(colloids_[c], sum) : Surface{});
+    }
+  }
+
+  bool reflect_next(Flight<D> &flight) override
+  {
+    const auto &announced = announced_[next_++];
+    if (announced.contact.colloid < 0) return false;
+    rebound(flight, announced.contact, announced.leaving);
+    return true;
+  }
+
+  bool reflect(Flight<D> &flight, int cell) override
+  {
+    if (flight.contacts == MOST_CONTACTS) return false;
     const auto contact = find(flight, cell);
+    if (contact.colloid < 0) return false;
+    rebound(flight, contact, leaving(flight, contact));
+    return true;
+  }
+
+ private:
+  using Coupling<D>::impulses_;
+  static constexpr int MOST_CONTACTS = 10;    // N_max
+  static constexpr int AHEAD = 16;            // particles
+  static constexpr double MOST_SPEED = 5;     // thermal speeds; of 1e5 two are faster
+  static constexpr int SPINS = D == 2 ? 1 : 3;
+  static constexpr int WIDTH = 1 + D + D * (D + 1) / 2 + D + SPINS;
+  static constexpr double SHARE = D == 2 ? (1.5 + M_PI / 4) / 2 : (4.0 / 3 + M_PI / 6) / 2;
+
+  struct Sphere {
+    Vector<D> x, v;
+    double radius;
+  };
+
+  struct Contact {
+    int colloid = -1;
+    Vector<D> arm, v;    // from the centre to the contact; of the particle that comes
+    double left;         // time from the contact to the end of the interval
+  };
+
+  struct Announced {
+    Contact contact;
+    Vector<D> leaving;
+  };
+
+  struct Surface {
+    Vector<D> v;
+    Spin<D> spin;
+  };
+
+  // How far from the place of a colloid it may end who has met it.
+  double distance(double speed, double flown) const
+  {
+    return largest_ + (placement_ == Placement::Entry ? (speed + fastest_) * flown : 0.0);
+  }
+
+  void remember(const Flight<D> &flight, const Contact &contact)
+  {
+    announced_.push_back({contact, {}});
     if (contact.colloid < 0) return;
-    const auto came = relative_to_rest(contact, leaving(flight, contact));
+    auto &leaves = announced_.back().leaving = leaving(flight, contact);
+    const auto came = relative_to_rest(contact, leaves);
     double *sum = &sums_[WIDTH * contact.colloid];
     *sum++ += 1;
     for (int a = 0; a < D; ++a) *sum++ += contact.arm[a];
@@ -136,29 +187,18 @@ template <int D> class ReflectionCoupling : public Coupling<D> {
     for (double component : torque(contact.arm, came)) *sum++ += component;
   }
 
-  // The velocities of the surfaces.
-  void decide(Processes &processes) override
+  // Put a particle where it met a colloid, and let it fly from there with a velocity that it leaves
+  // with in the frame of the surface.
+  void rebound(Flight<D> &flight, const Contact &contact, Vector<D> v)
   {
-    processes.sum_images(sums_, WIDTH);
-    surfaces_.clear();
-    for (std::size_t c = 0; c < colloids_.size(); ++c)
-      surfaces_.push_back(solve(colloids_[c], &sums_[WIDTH * c]));
-  }
-
-  bool reflect(Flight<D> &flight, int cell) override
-  {
-    if (flight.contacts == MOST_CONTACTS) return false;
-    const auto contact = find(flight, cell);
-    if (contact.colloid < 0) return false;
-    const auto &colloid = colloids_[contact.colloid];
+    const auto &sphere = spheres_[contact.colloid];
     const auto &surface = surfaces_[contact.colloid];
-    auto v = leaving(flight, contact);
     const auto turning = cross(surface.spin, contact.arm);
     Vector<D> x, impulse;
     for (int a = 0; a < D; ++a) {
       v[a] += surface.v[a] + turning[a];
       impulse[a] = contact.v[a] - v[a];
-      x[a] = colloid.x[a] - contact.left * colloid.v[a] + contact.arm[a];
+      x[a] = sphere.x[a] - contact.left * sphere.v[a] + contact.arm[a];
     }
     auto &push = impulses_[contact.colloid];
     const auto turn = torque(contact.arm, impulse);
@@ -169,55 +209,15 @@ template <int D> class ReflectionCoupling : public Coupling<D> {
     fly(flight, contact.left);
     flight.flown = contact.left;
     ++flight.contacts;
-    return true;
   }
 
- private:
-  using Coupling<D>::impulses_;
-  using Coupling<D>::slowest_;
-  static constexpr int MOST_CONTACTS = 10;    // N_max
-  static constexpr double MOST_SPEED = 5;     // thermal speeds; of 1e5 two are faster
-  static constexpr int SPINS = D == 2 ? 1 : 3;
-  static constexpr int WIDTH = 1 + D + D * (D + 1) / 2 + D + SPINS;
-  static constexpr double SHARE = D == 2 ? (1.5 + M_PI / 4) / 2 : (4.0 / 3 + M_PI / 6) / 2;
-
-  struct Contact {
-    int colloid = -1;
-    Vector<D> arm, v;    // from the centre to the contact; of the particle that comes
-    double left;         // time from the contact to the end of the interval
-  };
-
-  struct Surface {
-    Vector<D> v;
-    Spin<D> spin;
-  };
-
-  void find_radii()
-  {
-    radius_.clear();
-    for (const auto &colloid : colloids_) radius_.push_back(radii_.at(colloid.type));
-  }
-
-  // Enter colloids at their cells as they are now; particles must have been held where they touch.
-  void enter_anew()
-  {
-    find_radii();
-    cells_.begin(Grid<D>(cells_.grid()));
-    for (std::size_t c = 0; c < colloids_.size(); ++c)
-      cells_.enter(static_cast<int>(c), colloids_[c].x, radius_[c] + allowance_ + way_,
-                   [&](int cell, double square) {
-                     if (square < radius_[c] * radius_[c] && slowest_[cell] > 0)
-                       throw_moved_too_far(colloids_[c]);
-                   });
-  }
-
-  Vector<D> separation(const Vector<D> &x, const Colloid<D> &colloid, bool nearest_image = true) const
+  // From the nearest image.
+  Vector<D> separation(const Vector<D> &x, const Vector<D> &place) const
   {
     Vector<D> from;
     for (int a = 0; a < D; ++a) {
-      from[a] = x[a] - colloid.x[a];
-      if (nearest_image && cells_.grid().periodic[a])
-        from[a] -= cells_.grid().box[a] * std::rint(from[a] * per_length_[a]);
+      from[a] = x[a] - place[a];
+      from[a] -= cells_.grid().box[a] * std::rint(from[a] * per_length_[a]);
     }
     return from;
   }
@@ -229,13 +229,15 @@ template <int D> class ReflectionCoupling : public Coupling<D> {
     Contact contact;
     Vector<D> from{};    // from the centre of the colloid to the particle
     double most = placement_ == Placement::Entry ? -1 : 0;
-    cells_.each(cell, [&](int c) {
-      const auto &colloid = colloids_[c];
-      const auto apart = separation(flight.x, colloid);
-      const double inside = 1 - square<D>(apart) / (radius_[c] * radius_[c]);
+    Vector<D> mean;    // velocity over its flight
+    for (int a = 0; a < D; ++a) mean[a] = flight.v[a] - 0.5 * flight.flown * field_[a];
+    cells_.each(cell, distance(std::sqrt(square<D>(flight.v)), flight.flown), [&](int c) {
+      const auto &sphere = spheres_[c];
+      const auto apart = separation(flight.x, sphere.x);
+      const double inside = sphere.radius * sphere.radius - square<D>(apart);
       const double ago = placement_ == Placement::Entry
-          ? entry(flight, colloid, apart, inside, radius_[c])
-          : inside;
+          ? entry(flight.flown, mean, sphere, apart, inside)
+          : inside / (sphere.radius * sphere.radius);
       if (!(ago > most)) return;
       most = ago;
       from = apart;
@@ -243,17 +245,16 @@ template <int D> class ReflectionCoupling : public Coupling<D> {
     });
     if (contact.colloid < 0) return contact;
 
-    const auto &colloid = colloids_[contact.colloid];
+    const auto &sphere = spheres_[contact.colloid];
     if (placement_ == Placement::Nearest)
       contact.left = 0.5 * interval_;
     else if (most > flight.flown)    // it never came in: it was inside before
       contact.left = 0.5 * flight.flown;
     else {
       contact.left = most;
-      const auto way = relative_velocity(flight, colloid);
-      for (int a = 0; a < D; ++a) from[a] -= most * way[a];
+      for (int a = 0; a < D; ++a) from[a] -= most * (mean[a] - sphere.v[a]);
     }
-    const double scale = radius_[contact.colloid] / std::sqrt(square<D>(from));
+    const double scale = sphere.radius / std::sqrt(square<D>(from));
     for (int a = 0; a < D; ++a) {
       contact.arm[a] = scale * from[a];
       contact.v[a] = flight.v[a] - contact.left * field_[a];
@@ -261,30 +262,24 @@ template <int D> class ReflectionCoupling : public Coupling<D> {
     return contact;
   }
 
-  // The mean over its flight, in the frame of the colloid.
-  Vector<D> relative_velocity(const Flight<D> &flight, const Colloid<D> &colloid) const
+  // How long ago a particle came in, on a straight way in the frame of the colloid, with its mean
+  // velocity; -1 for one that did not, and more than it has flown for one that ends inside and was
+  // there all the time. `inside` is the square of the radius less that of the distance.
+  double entry(double flown, const Vector<D> &mean, const Sphere &sphere, const Vector<D> &from,
+               double inside) const
   {
-    Vector<D> v;
-    for (int a = 0; a < D; ++a)
-      v[a] = flight.v[a] - 0.5 * flight.flown * field_[a] - colloid.v[a];
-    return v;
-  }
-
-  // How long ago a particle came in, on a straight way in the frame of the colloid; -1 for one that
-  // did not, and more than it has flown for one that ends inside and was there all the time.
-  double entry(const Flight<D> &flight, const Colloid<D> &colloid, const Vector<D> &from,
-               double inside, double size) const
-  {
-    const auto v = relative_velocity(flight, colloid);
-    double approach = 0;
-    for (int a = 0; a < D; ++a) approach += v[a] * from[a];
-    const double speed = square<D>(v);
-    const double root = approach * approach + speed * inside * size * size;
-    if (!(root > 0)) return -1;
+    double approach = 0, speed = 0;
+    for (int a = 0; a < D; ++a) {
+      const double v = mean[a] - sphere.v[a];
+      approach += v * from[a];
+      speed += v * v;
+    }
+    const double root = approach * approach + speed * inside;
+    if (!(root > 0) || (inside <= 0 && approach <= 0)) return -1;
     const double ago = (approach + std::sqrt(root)) / speed;
     if (!(ago >= 0)) return -1;
-    if (ago <= flight.flown * (1 + 1e-9)) return std::min(ago, flight.flown);    // rounding
-    return inside > 0 ? 2 * flight.flown : -1;
+    if (ago <= flown * (1 + 1e-9)) return std::min(ago, flown);    // rounding
+    return inside > 0 ? 2 * flown : -1;
   }
 
   // The velocity that a particle leaves with, in the frame of the surface (13, 14): along the normal
@@ -392,24 +387,21 @@ template <int D> class ReflectionCoupling : public Coupling<D> {
       throw TooManyBounces::fault(static_cast<std::uint32_t>(flight.id));
   }
 
-  [[noreturn]] void throw_moved_too_far(const Colloid<D> &colloid) const
-  {
-    throw Fault("colloid " + std::to_string(static_cast<std::int64_t>(colloid.id)) +
-                " moved further since the last collision than " + std::to_string(allowance_) +
-                ", which the choice of fluid to reflect allows: a force on it is too strong");
-  }
-
   Radii radii_;
   Placement placement_;
   double interval_, temperature_;
   Vector<D> field_;
   const Walls<D> *walls_;
   std::vector<Colloid<D>> colloids_;
-  std::vector<double> radius_;     // of each
-  Vector<D> per_length_{};         // of the box
-  double allowance_ = 0;           // how far they may move in the interval
-  double way_ = 0;                 // how far behind a colloid its contacts are looked for
+  std::vector<Sphere> spheres_;
+  Vector<D> per_length_{};              // of the box; 0 across walls
+  double largest_ = 0, fastest_ = 0;    // radius; speed, with what the field adds to the fluid's
+  double way_ = 0;                      // how far behind a colloid its contacts are looked for
   ColloidCells<D> cells_;
+  std::vector<int> listed_;
+  std::vector<double> within_;
+  std::vector<Announced> announced_;
+  std::size_t next_ = 0;    // of them
   CounterRandom random_{0, 0};
   std::vector<double> sums_;
   std::vector<Surface> surfaces_;

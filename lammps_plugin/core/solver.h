@@ -2,11 +2,12 @@
 //
 //   begin_interval   turn the velocities as the last collision said, give the coupling what is near
 //                    colloids, move all others to the end of the interval, sort into new cells
-//   end_interval     take the near ones back, reflect what is inside colloids, exchange with other
+//   end_interval     take the near ones back, reflect what has met colloids, exchange with other
 //                    processes, collide
 //
-// The first is one pass over memory, in blocks that stay in the first-level cache. A collision only
-// makes the maps of the cells; turn() applies them at once when somebody wants to see velocities.
+// The first is one pass over memory, in blocks that stay in the first-level cache. Where colloids
+// reflect the fluid it waits for their last places, and begins the second. A collision only makes
+// the maps of the cells; turn() applies them at once when somebody wants to see velocities.
 
 #pragma once
 
@@ -133,40 +134,26 @@ template <int D> class Solver {
     auto *coupling = method_.coupling.get();
     if (coupling) coupling->begin(grid_, colloids, colloid_speed);
     draw_shift(collisions_);
-    slowest_ = coupling && coupling->after_flight() ? coupling->hold(grid_).data() : nullptr;
-    std::fill(sums_.of.begin(), sums_.of.end(), CellSum<D>{});
-    strays_.clear();
-    held_.clear();
-    for (int begin = 0; begin < fluid_.size(); begin += BLOCK) {
-      const int end = std::min(begin + BLOCK, fluid_.size());
-      if (turning_) turn(begin, end);
-      const auto before = coupling ? coupling->taken().size() : 0;
-      if (coupling) coupling->take(fluid_, begin, end);
-      fly(begin, end);
-      sort(begin, end);
-      if (coupling)
-        for (auto k = before; k < coupling->taken().size(); ++k)
-          fluid_.cell[coupling->taken()[k]] = TAKEN;
-      if (slowest_) hold(begin, end);
-      sum(begin, end);
-    }
-    turning_ = false;
+    if (!reflecting()) move();
     if (coupling) coupling->ready();
   }
 
   void end_interval(const std::vector<Colloid<D>> &colloids = {})
   {
-    if (auto *coupling = method_.coupling.get()) {
+    if (reflecting()) {
+      method_.coupling->meet(grid_, colloids, {method_.seed, collisions_});
+      move();
+      reflect();
+    } else if (auto *coupling = method_.coupling.get()) {
       coupling->give_back(fluid_);
       for (int i : coupling->taken()) {
         sort(i, i + 1);
         sum(i, i + 1);
       }
     }
-    if (slowest_) reflect(colloids);
     std::sort(strays_.rbegin(), strays_.rend());    // removal moves the last one: begin there
     for (int i : strays_) {
-      if (!slowest_) travelling_.push_back(fluid_.particle(i));
+      if (!reflecting()) travelling_.push_back(fluid_.particle(i));
       fluid_.remove(i);
     }
     migrate();
@@ -185,6 +172,31 @@ template <int D> class Solver {
   static constexpr int AHEAD = 32;            // particles
   static constexpr int SORT_INTERVAL = 64;    // collisions, in which a particle moves a few cells
   static constexpr int STRAY = -1, TAKEN = -2;    // instead of a cell
+
+  bool reflecting() const { return method_.coupling && method_.coupling->after_flight(); }
+
+  // All that the coupling does not take, to the end of the interval and into the sums of the cells.
+  void move()
+  {
+    auto *coupling = method_.coupling.get();
+    std::fill(sums_.of.begin(), sums_.of.end(), CellSum<D>{});
+    strays_.clear();
+    held_.clear();
+    for (int begin = 0; begin < fluid_.size(); begin += BLOCK) {
+      const int end = std::min(begin + BLOCK, fluid_.size());
+      if (turning_) turn(begin, end);
+      const auto before = coupling ? coupling->taken().size() : 0;
+      if (coupling) coupling->take(fluid_, begin, end);
+      fly(begin, end);
+      sort(begin, end);
+      if (coupling)
+        for (auto k = before; k < coupling->taken().size(); ++k)
+          fluid_.cell[coupling->taken()[k]] = TAKEN;
+      if (reflecting()) hold(begin, end);
+      sum(begin, end);
+    }
+    turning_ = false;
+  }
 
   void set_cells(const std::array<int, D> &lower, const std::array<int, D> &upper)
   {
@@ -304,71 +316,50 @@ template <int D> class Solver {
           strays_.push_back(i);
           continue;
         }
-        if (slowest_ && method_.coupling->holds(fluid_, i, cell)) {
-          held_.push_back(i);
-          continue;
-        }
       }
       add_to(sums_.of[cell], i);
     }
   }
 
-  double square_speed(int i) const
-  {
-    double sum = 0;
-    for (int a = 0; a < D; ++a) sum += fluid_.v[a][i] * fluid_.v[a][i];
-    return sum;
-  }
-
-  // Keep back what may have met colloids.
+  // Keep back what has met colloids.
   void hold(int begin, int end)
   {
-    listed_.resize(end - begin);
-    int listed = 0;    // a list without branches: who is in it follows no pattern
-    for (int i = begin; i < end; ++i) {
-      const int cell = fluid_.cell[i];
-      listed_[listed] = i;
-      listed += (cell >= 0) & (square_speed(i) >= slowest_[cell >= 0 ? cell : 0]);
-    }
-    for (int k = 0; k < listed; ++k) {
-      const int i = listed_[k];
-      if (!method_.coupling->holds(fluid_, i, fluid_.cell[i])) continue;
-      held_.push_back(i);
-      fluid_.cell[i] = TAKEN;
-    }
+    for (int i = begin; i < end; ++i)
+      if (fluid_.cell[i] == STRAY) fluid_.cell[i] = find(i);
+    const auto before = held_.size();
+    method_.coupling->watch(fluid_, begin, end, held_);
+    for (auto k = before; k < held_.size(); ++k) fluid_.cell[held_[k]] = TAKEN;
   }
 
   // Reflect what was held, and bring it into the sums; what has come to the cells of other processes
   // goes there, and may be reflected there.
-  void reflect(const std::vector<Colloid<D>> &colloids)
+  void reflect()
   {
     auto &coupling = *method_.coupling;
-    coupling.meet(colloids, {method_.seed, collisions_});
-    std::vector<Flight<D>> here, leaving;
+    std::vector<Flight<D>> leaving;
     for (int i : strays_) leaving.push_back({fluid_.particle(i), method_.interval, 0});
-    for (int i : held_) {
-      here.push_back({fluid_.particle(i), method_.interval, 0});
-      coupling.announce(here.back(), locate(here.back()));
-    }
-    auto arrived = leaving;
+    auto arrived = std::move(leaving);
     bring_home<D>(arrived, grid_, processes_);
     for (auto &flight : arrived) coupling.announce(flight, locate(flight));
     coupling.decide(processes_);
 
     leaving.clear();
-    for (std::size_t k = 0; k < here.size(); ++k) {
-      const int i = held_[k], cell = fluid_.cell[i] = bounce(here[k]);
+    for (int i : held_) {
+      Flight<D> flight{fluid_.particle(i), method_.interval, 0};
+      coupling.reflect_next(flight);
+      const int cell = fluid_.cell[i] = bounce(flight);
       for (int a = 0; a < D; ++a) {
-        fluid_.x[a][i] = here[k].x[a];
-        fluid_.v[a][i] = here[k].v[a];
+        fluid_.x[a][i] = flight.x[a];
+        fluid_.v[a][i] = flight.v[a];
       }
       if (cell < 0) {
         strays_.push_back(i);
-        leaving.push_back(here[k]);
+        leaving.push_back(flight);
       } else {
         add_to(sums_.of[cell], i);
       }
     }
+    for (auto &flight : arrived) coupling.reflect_next(flight);
     for (;;) {
       for (auto &flight : arrived)
         (bounce(flight) < 0 ? leaving : landed_).push_back(flight);
@@ -488,8 +479,7 @@ template <int D> class Solver {
   Array<Turn<D>> turns_;       // of the last collision
   bool turning_ = false;             // whether they are still to be applied
   std::vector<int> strays_;          // indices of particles in no cell of this process
-  const double *slowest_ = nullptr;  // square speed from which colloids may reflect, of each cell
-  std::vector<int> held_, listed_;   // particles that may have met colloids
+  std::vector<int> held_;            // particles that have met colloids
   std::vector<Particle<D>> travelling_;
   std::vector<Flight<D>> landed_;
   TileOrder<D> tiles_;

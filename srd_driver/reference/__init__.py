@@ -1,9 +1,11 @@
-"""The MPC method as published, in numpy, written to be read beside the paper.
+"""The MPC method as published, in numpy, written to be read beside the papers.
 
-Each module is one noun of tabatabaei-2009, chapter 3; `ReferenceEngine` puts them in order.
+Each module is one noun of tabatabaei-2009, chapter 3, or of hecht-2005; `ReferenceEngine` puts the
+first in order, `SuspensionEngine` the second.
 """
 
 from srd_driver.reference.engine import ReferenceEngine
 from srd_driver.reference.faults import SimulationFault
+from srd_driver.reference.suspension_engine import SuspensionEngine
 
-__all__ = ["ReferenceEngine", "SimulationFault"]
+__all__ = ["ReferenceEngine", "SimulationFault", "SuspensionEngine"]

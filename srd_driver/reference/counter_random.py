@@ -31,6 +31,7 @@ class Stream(enum.IntEnum):
     SHUFFLE = 5  # items 0, 1: keys of the eight rounds of the permutation
     BATH = 6  # item = particle: normals of its new velocity
     REFLECTION = 8  # item = particle, block = contact: its velocity after a contact with a colloid
+    PAIR = 9  # step of molecular dynamics, item and block the lower and the higher atom number
 
 
 @dataclass(frozen=True)
@@ -50,6 +51,12 @@ class CounterRandom:
         philox = np.random.Philox(key=[self.seed, stream], counter=[0, self.step, block, 0])
         words: Words = philox.random_raw(4 * items)
         return words.reshape(items, 4).T
+
+    def block(self, stream: Stream, item: int, block: int = 0) -> Words:
+        """That of one item, shape (4,)."""
+        counter = [item, self.step, block, 0]  # counted on before it is used
+        words: Words = np.random.Philox(key=[self.seed, stream], counter=counter).random_raw(4)
+        return words
 
     def uniform(self, stream: Stream, items: int, block: int = 0) -> Array:
         """Four uniforms in [0, 1) for each item, shape (4, items): (word >> 11) 2^-53."""

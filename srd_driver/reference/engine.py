@@ -5,7 +5,7 @@ random numbers, exactly enough to write another engine that gives the same parti
 """
 
 from os import PathLike
-from typing import Self
+from typing import Any, Self
 
 import numpy as np
 from numpy.typing import NDArray
@@ -64,7 +64,8 @@ class ReferenceEngine:
                 own = slice(first, first + species.count)
                 self._colloid_field[:, own] += drive.acceleration[:dimensions, np.newaxis]
             first += species.count
-        self._coupling = ColloidForces(system, solvent) if system.particles else None
+        by_force = solvent.coupling == "force" and system.particles
+        self._coupling = ColloidForces(system, solvent) if by_force else None
 
     @property
     def time(self) -> float:
@@ -119,6 +120,13 @@ class ReferenceEngine:
         mean: Array = momentum / (self._fluid_velocities.shape[1] + self._masses.sum())
         return mean
 
+    def averages(self) -> dict[str, float]:
+        """What tables average, by column."""
+        return {
+            "fluid_temperature": self.fluid_temperature(),
+            "mean_velocity_x": float(self.mean_velocity()[0]),
+        }
+
     def fluid_temperature(self) -> float:
         """kBT of the fluid about its mean velocity in bins of half a cell along y [kBT].
 
@@ -145,15 +153,17 @@ class ReferenceEngine:
     def save(self, file: str | PathLike[str]) -> None:
         """Write the state as npz; `load` continues from it bit for bit."""
         with open(file, "wb") as output:
-            np.savez(
-                output,
-                collisions=self.collisions,
-                fluid_positions=self._fluid_positions,
-                fluid_velocities=self._fluid_velocities,
-                colloid_positions=self._colloid_positions,
-                colloid_velocities=self._colloid_velocities,
-                colloid_images=self.colloid_images,
-            )
+            np.savez(output, collisions=self.collisions, **self._parts())
+
+    def _parts(self) -> dict[str, Any]:
+        """The arrays of the state."""
+        return {
+            "fluid_positions": self._fluid_positions,
+            "fluid_velocities": self._fluid_velocities,
+            "colloid_positions": self._colloid_positions,
+            "colloid_velocities": self._colloid_velocities,
+            "colloid_images": self.colloid_images,
+        }
 
     @classmethod
     def load(cls, scene: Scene, file: str | PathLike[str]) -> Self:
@@ -166,6 +176,7 @@ class ReferenceEngine:
                     saved["fluid_velocities"].T,
                     saved["colloid_positions"].T,
                     saved["colloid_velocities"].T,
+                    saved["spins"].T if "spins" in saved else np.empty((0, 3)),
                 ),
             )
             engine.collisions = int(saved["collisions"])

@@ -11,6 +11,7 @@ import shutil
 import signal
 import subprocess
 import sys
+from collections.abc import Mapping
 from pathlib import Path
 
 import pytest
@@ -30,22 +31,30 @@ ENVIRONMENT = os.environ | {
     "PATH": f"{COMMANDS}:/usr/bin:/bin",
     "OMP_NUM_THREADS": "1",
 }
-RANKS = {"1 rank": 1, "2 ranks": 2}
+RANKS = {"1 rank": 1, "2 ranks": 2, "cell": 1, "reflection": 1}
+SUSPENSIONS = {  # by coupling
+    "cell": {"cells": 6, "density": 10, "md_steps_per_collision": 150, "duration": 150},
+    "reflection": {"coupling": "reflection", "cells": 15, "potential": "hertz", "duration": 60},
+}
 LONGEST = 120.0  # seconds until a run that was killed has a process that ended
 
 
-def fields() -> list[str]:
-    return [word for item in FIELDS.items() for word in ("--set", "{}={}".format(*item))]
+def settings(fields: Mapping[str, object]) -> list[str]:
+    return [word for item in fields.items() for word in ("--set", "{}={}".format(*item))]
 
 
-def run_command(directory: Path, interval: float, ranks: int) -> list[str]:
+def run_command(directory: Path, interval: float, name: str) -> list[str]:
+    ranks = RANKS[name]
     mpi = [str(COMMANDS / "mpirun"), "-np", str(ranks)] if ranks > 1 else []
-    words = ["run", "channel", *fields(), "--checkpoint-interval", str(interval), "--resume"]
+    scene = ["channel", *settings(FIELDS)]
+    if name in SUSPENSIONS:
+        scene = ["claylike", *settings({"equilibration": 0, "peclet": 1} | SUSPENSIONS[name])]
+    words = ["run", *scene, "--checkpoint-interval", str(interval), "--resume"]
     return [*mpi, sys.executable, "-m", "narrows", *words, "--out", str(directory)]
 
 
 def sweep_command(directory: Path) -> list[str]:
-    words = ["sweep", "channel", *fields(), "--over", "gravity=0.5,1", "--jobs", "2"]
+    words = ["sweep", "channel", *settings(FIELDS), "--over", "gravity=0.5,1", "--jobs", "2"]
     del words[words.index("gravity=1") - 1 : words.index("gravity=1") + 1]
     return [sys.executable, "-m", "narrows", *words, "--out", str(directory)]
 
@@ -119,7 +128,7 @@ def kills(count: int, chance: random.Random, folder: Path, names: list[str]) -> 
         command = (
             sweep_command(folder / f"whole {name}")
             if name == "sweep"
-            else run_command(folder / f"whole {name}", 20.0, RANKS[name])
+            else run_command(folder / f"whole {name}", 20.0, name)
         )
         wholly(command)
         whole[name] = outputs(Path(command[-1]))
@@ -138,7 +147,7 @@ def kills(count: int, chance: random.Random, folder: Path, names: list[str]) -> 
             command = (
                 sweep_command(directory)
                 if name == "sweep"
-                else run_command(directory, interval, RANKS[name])
+                else run_command(directory, interval, name)
             )
             size = max(map(len, whole[name].values()))
             room = chance.randrange(1000, 2 * size)
@@ -162,6 +171,6 @@ def test_a_few_kills_leave_no_trace(tmp_path: Path) -> None:
 def test_many_kills_leave_no_trace(tmp_path: Path) -> None:
     seed = int(os.environ.get("NARROWS_KILLS_SEED", str(random.SystemRandom().randrange(10**6))))
     print(f"NARROWS_KILLS_SEED={seed}")
-    names = ["1 rank", "1 rank", "1 rank", "2 ranks", "sweep"]
+    names = ["1 rank", "1 rank", "1 rank", "2 ranks", "sweep", *SUSPENSIONS]
     done = kills(KILLS, random.Random(seed), tmp_path, names)
     print("\n".join(f"{kind}: {count}" for kind, count in sorted(done.items())))

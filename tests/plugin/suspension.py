@@ -2,16 +2,15 @@
 
 from dataclasses import dataclass, field
 from pathlib import Path
-from typing import Any
+from typing import Any, Literal
 
 import numpy as np
 from numpy.typing import NDArray
 
-from srd_driver.reference import cell_coupling, thermostats
-from srd_driver.reference.boundaries import Boundaries, stream, virtual_particles
-from srd_driver.reference.collision import Cells, collide, grid_shape, grid_shift
-from srd_driver.reference.counter_random import CounterRandom
-from srd_driver.reference.reflection import Placement, Spheres, reflect
+from lammps_inputs.system import Thermostat
+from srd_driver.reference import suspension as reference
+from srd_driver.reference.boundaries import Boundaries
+from srd_driver.reference.reflection import Spheres
 from srd_driver.reference.rotation import SPHERE
 from tests.conftest import Run
 from tests.plugin.fluid import read_fluid
@@ -44,13 +43,13 @@ class Suspension:
     box: tuple[float, ...]
     periodic: tuple[bool, ...]
     spheres: tuple[tuple[float, ...], ...] = ()
-    coupling: str = "none"
+    coupling: Literal["none", "entry", "nearest", "cell"] = "none"
     radius: float = 1.2
     mass: float = 20.0
     weight: tuple[float, ...] = ()
     compensated: bool = False
     drift_interval: int = 0
-    tstat: str = "none"
+    tstat: Thermostat = "none"
     walls: dict[tuple[int, bool], tuple[float, ...]] = field(default_factory=dict)
     virtual: bool = True
     density: int = 5
@@ -60,32 +59,49 @@ class Suspension:
         random = np.random.default_rng(11)
         d, n = len(self.box), len(self.spheres)
         self.dimensions = d
-        self.positions = np.array(self.spheres, dtype=float).reshape(n, d).T.copy()
-        self.velocities = random.normal(size=(d, n)) * 0.5
-        self.spins = random.normal(size=(1 if d == 2 else 3, n))
-        self.acceleration = np.array(self.weight or (0.0,) * d)[:, None]
+        positions = np.array(self.spheres, dtype=float).reshape(n, d).T.copy()
+        velocities = random.normal(size=(d, n)) * 0.5
+        spins = random.normal(size=(1 if d == 2 else 3, n))
         count = round(self.density * np.prod(self.box))
         fluid = random.uniform(size=(d, 3 * count)) * np.array(self.box)[:, None]
-        separation = fluid[:, :, None] - self.positions[:, None]
+        separation = fluid[:, :, None] - positions[:, None]
         for axis, size in enumerate(self.box):
             if self.periodic[axis]:
                 separation[axis] -= size * np.rint(separation[axis] / size)
         room = self.radius if self.coupling in ("entry", "nearest") else 0.0
         free = ((separation**2).sum(axis=0) >= room**2).all(axis=1)
-        self.fluid_positions = fluid[:, free][:, :count].copy()
-        self.fluid_velocities = random.normal(size=self.fluid_positions.shape)
-        self.boundaries = Boundaries(
-            self.box, self.periodic, self.walls, self.density if self.virtual else 0
+        fluid = fluid[:, free][:, :count].copy()
+        each = np.ones(n)
+        sizes = (self.radius * each, self.mass * each, SPHERE * self.mass * self.radius**2 * each)
+        self.motion = reference.Suspension(
+            Boundaries(self.box, self.periodic, self.walls, self.density if self.virtual else 0),
+            *(SEED, self.tau, STEPS, fluid, random.normal(size=fluid.shape)),
+            Spheres(positions, velocities, spins, *sizes),
+            self.coupling,
+            np.array(self.weight or (0.0,) * d)[:, None],
+            self.compensated,
+            thermostat=self.tstat,
+            drift_interval=self.drift_interval,
         )
-        self.field = np.zeros((d, 1))
-        if self.compensated:
-            self.field = -self.acceleration * self.mass * n / self.fluid_positions.shape[1]
+
+    @property
+    def arrays(self) -> dict[str, Array]:
+        """The state, as `End` has it."""
+        motion, spheres = self.motion, self.motion.spheres
+        return {
+            "fluid_positions": motion.fluid_positions,
+            "fluid_velocities": motion.fluid_velocities,
+            "positions": spheres.positions,
+            "velocities": spheres.velocities,
+            "spins": spheres.spins,
+        }
 
     def write(self, folder: Path) -> None:
         """`start.fluid` and `in.lammps`, which leaves `end.fluid` and `end.dump`."""
         d, n = self.dimensions, len(self.spheres)
-        count = self.fluid_positions.shape[1]
-        rows = np.vstack([np.arange(count), self.fluid_positions, self.fluid_velocities]).T
+        spheres, fluid = self.motion.spheres, self.motion.fluid_positions
+        count = fluid.shape[1]
+        rows = np.vstack([np.arange(count), fluid, self.motion.fluid_velocities]).T
         header = b"mpcfluid" + np.array([d, count, 0], dtype="<i8").tobytes()
         (folder / "start.fluid").write_bytes(header + rows.astype("<f8").tobytes())
         box = " ".join(f"0 {size!r}" for size in self.box) + (" -0.5 0.5" if d == 2 else "")
@@ -96,17 +112,17 @@ class Suspension:
             *("pair_style zero 1.5", f"comm_modify cutoff {6 if n else 2.5}"),
         ]
         for i in range(n):
-            v = (*self.velocities[:, i], 0.0)
-            spin = (0.0, 0.0, *self.spins[:, i])[-3:]
+            v = (*spheres.velocities[:, i], 0.0)
+            spin = (0.0, 0.0, *spheres.spins[:, i])[-3:]
             values = {"diameter": 2 * self.radius, "mass": self.mass}
             values |= dict(zip(("vx", "vy", "vz"), v, strict=False))
             settings = " ".join(f"{name} {float(value)!r}" for name, value in values.items())
             lines += [
-                f"create_atoms 1 single {self._three(self.positions[:, i])}",
+                f"create_atoms 1 single {self._three(spheres.positions[:, i])}",
                 f"set atom {i + 1} {settings} omega {self._three(np.array(spin))}",
             ]
         keywords = [f"density {self.density} tstat {self.tstat}"]
-        weight = self._three(self.acceleration[:, 0])
+        weight = self._three(self.motion.acceleration[:, 0])
         if self.compensated:
             keywords.append(f"compensate {weight}")
         if self.drift_interval:
@@ -123,7 +139,7 @@ class Suspension:
         lines += [
             *("pair_coeff * *", f"timestep {self.tau / STEPS!r}", "neighbor 0.3 bin"),
             "fix motion all nve/sphere",
-            f"fix weight all addforce {self._three(self.mass * self.acceleration[:, 0])}",
+            f"fix weight all addforce {self._three(self.mass * self.motion.acceleration[:, 0])}",
             f"fix fluid all mpc {STEPS} {'all' if n else 'NULL'} 1 1 {SEED} load start.fluid "
             + " ".join(keywords),
             *("thermo_modify lost error", "variable steps index 1", "run ${steps}"),
@@ -140,70 +156,8 @@ class Suspension:
 
     def advance(self, collisions: int) -> None:
         """Move it in numpy."""
-        time = self.tau / STEPS
-        for collision in range(collisions):
-            fluid = (self.fluid_positions, self.fluid_velocities)
-            stream(*fluid, self.field, self.tau, self.boundaries)
-            self.boundaries.wrap(self.fluid_positions)
-            for _ in range(STEPS):
-                self.velocities += 0.5 * time * self.acceleration
-                self.positions += time * self.velocities
-                self.velocities += 0.5 * time * self.acceleration
-            random = CounterRandom(SEED, collision)
-            if self.coupling in ("entry", "nearest"):
-                self._reflect(random)
-            self._collide(random)
-            if self.drift_interval and (collision + 1) % self.drift_interval == 0:
-                mass = self.fluid_positions.shape[1] + self.mass * len(self.spheres)
-                drift = self.momentum()[:, None] / mass
-                self.fluid_velocities -= drift
-                self.velocities -= drift
-
-    def momentum(self) -> Array:
-        """Of everything (d,)."""
-        total: Array = self.fluid_velocities.sum(axis=1) + self.mass * self.velocities.sum(axis=1)
-        return total
-
-    def _reflect(self, random: CounterRandom) -> None:
-        each = np.ones(len(self.spheres))
-        inertia = SPHERE * self.mass * self.radius**2
-        spheres = Spheres(
-            *(self.positions, self.velocities, self.spins),
-            *(self.radius * each, self.mass * each, inertia * each),
-        )
-        fluid = (self.fluid_positions, self.fluid_velocities)
-        placement: Placement = "entry" if self.coupling == "entry" else "nearest"
-        momentum, angular = reflect(
-            *fluid, spheres, placement, self.tau, 1.0, self.field, self.boundaries, random
-        )
-        self.velocities += momentum / self.mass
-        self.spins += angular / inertia
-
-    def _collide(self, random: CounterRandom) -> None:
-        positions, velocities = self.fluid_positions, self.fluid_velocities
-        masses = np.ones(positions.shape[1])
-        if self.coupling == "cell":
-            wrapped = self.positions.copy()
-            self.boundaries.wrap(wrapped)
-            positions = np.hstack([positions, wrapped])
-            velocities = np.hstack([velocities, self.velocities])
-            masses = np.concatenate([masses, np.full(len(self.spheres), self.mass)])
-        shift = grid_shift(random, self.dimensions)
-        shape = grid_shape(self.box, self.periodic)
-        cells = Cells.sort(positions, shift, shape, self.periodic)
-        of_fluid = cells.numbers[: self.fluid_positions.shape[1]]
-        fluid = np.bincount(of_fluid, minlength=cells.count).astype(float)
-        filled = virtual_particles(self.boundaries, cells, shift, fluid, 1.0, random)
-        mean = cell_coupling.mean_velocity(velocities, masses, cells, *filled)
-        collide(velocities, cells, mean, 90, "coordinate_axes", random)
-        if self.tstat == "monte_carlo":
-            cell_coupling.monte_carlo(velocities, masses, cells, 1.0, random)
-        elif self.tstat == "layer":
-            thermostats.layer(velocities, cells)
-        if self.coupling == "cell":
-            count = self.fluid_positions.shape[1]
-            self.fluid_velocities[:] = velocities[:, :count]
-            self.velocities[:] = velocities[:, count:]
+        for _ in range(collisions):
+            self.motion.advance()
 
 
 @dataclass(frozen=True)
@@ -237,7 +191,7 @@ def differences(end: End, suspension: Suspension) -> dict[str, float]:
     """The largest of each kind, images of the fluid taken as the same place."""
     found: dict[str, Any] = {}
     for kind in vars(end):
-        apart = getattr(end, kind) - getattr(suspension, kind)
+        apart = getattr(end, kind) - suspension.arrays[kind]
         if kind.endswith("positions"):
             for axis, size in enumerate(suspension.box):
                 if suspension.periodic[axis]:

@@ -160,6 +160,23 @@ def test_dissipation(lammps: Commands, r: float, newton: str) -> None:
     assert ROUGH.normal_friction(2.0) == pytest.approx(friction)  # the largest
 
 
+def test_energy_is_kept_to_the_square_of_the_step(lammps: Commands) -> None:
+    """Two spheres that bounce off their barrier, without dissipation: velocity Verlet's slope."""
+    towards = "set atom 1 vx 0.4 vy 0.8 vz 0.8\nset atom 2 vx -0.4 vy -0.8 vz -0.8\n"
+    errors = []
+    for step in (2e-3, 1e-3, 5e-4, 2.5e-4):
+        commands = setup(BARRIER, pair(2.6, towards)) + f"timestep {step}\nfix 1 all nve/sphere\n"
+        instance = lammps(commands + "run 0 post no")
+        energies = []
+        for _ in range(60):
+            instance.command(f"run {round(0.008 / step)} pre no post no")
+            energies.append(instance.get_thermo("pe") + instance.get_thermo("ke"))
+        assert vectors(instance, "v")[0, 1] < -0.7  # it has bounced
+        errors.append(np.abs(np.array(energies) - energies[0]).max())
+    slopes = np.diff(np.log2(errors))
+    assert_allclose(slopes, -2, atol=0.1)
+
+
 def test_noise_has_the_strength_of_the_friction(lammps: Commands) -> None:
     """Of 2000 steps at rest: <F^2> = 2 kBT friction / dt along and, for two tangents, across."""
     r = 1.95

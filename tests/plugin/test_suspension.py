@@ -76,15 +76,16 @@ def test_every_particle_agrees_after_30_collisions(
     for kind, difference in differences(end, expected).items():
         assert difference < TOLERANCE, kind
     if expected.spheres:
-        assert abs(expected.velocities - CASES[case].velocities).max() > 0.1
+        moved = expected.arrays["velocities"] - CASES[case].arrays["velocities"]
+        assert abs(moved).max() > 0.1
 
 
 def test_momentum_is_kept_at_every_collision_under_a_compensated_weight() -> None:
     """In numpy, to which the plugin agrees: what colloids gain in weight the fluid loses."""
     for case in ("cell, thermostat, weight", "entry"):
-        suspension = copy.deepcopy(CASES[case])
-        suspension.drift_interval = 0
-        start = suspension.momentum()
+        motion = copy.deepcopy(CASES[case]).motion
+        motion.drift_interval = 0
+        start = motion.momentum()
         for _ in range(20):
-            suspension.advance(1)
-            assert np.abs(suspension.momentum() - start).max() < 1e-11
+            motion.advance()
+            assert np.abs(motion.momentum() - start).max() < 1e-11

@@ -59,6 +59,38 @@ def test_deck_driver_and_resumed_run_are_the_same(
     assert {"largest", "number", "bonds_per_colloid"} <= summary["clusters"].keys()
 
 
+@pytest.mark.parametrize("case", ["cell", "reflection"])
+def test_the_reference_engine_begins_alike_and_resumes_bit_for_bit(
+    case: str, tmp_path: Path
+) -> None:
+    """Frames of both engines, to the digits of the file; and what analysis makes of numpy's."""
+    fields = CASES[case] | {"duration": 6, "md_steps_per_collision": 60, "potential": "hertz"}
+    scene = make_scene("claylike", **fields, volume_fraction=0.05)
+    runs = []
+    for engine in ("reference", "mpc"):
+        with Simulation(scene, engine, tmp_path / engine) as simulation:
+            simulation.finish()
+        runs.append(RunDirectory(tmp_path / engine))
+    frames = [run.particles().positions[:4] for run in runs]
+    np.testing.assert_allclose(*frames, rtol=0, atol=1e-5)
+    tables = [run.table() for run in runs]
+    for column in ("fluid_velocity_z", "mean_velocity_z", "rotational_temperature"):
+        np.testing.assert_allclose(*(table[column][:3] for table in tables), rtol=0, atol=1e-5)
+    kill_and_resume(scene, "reference", tmp_path / "killed")
+    same_bytes(tmp_path / "reference", tmp_path / "killed", scene)
+    assert {"colloid_temperature", "rotational_temperature"} <= analyze(runs[0].path).keys()
+
+
+def test_the_reference_engine_refuses_what_it_has_not() -> None:
+    for fields, complaint in (
+        ({"thermostat": "rescale"}, "thermostat = 'rescale'"),
+        ({"thermostat": "layer", "boundaries": "bottom"}, "thermostat = 'layer'"),
+        ({"hydrodynamics": "bath"}, "hydrodynamics = 'bath'"),
+    ):
+        with pytest.raises(SceneError, match=complaint):
+            check_engine(make_scene("claylike", **fields), "reference")
+
+
 def test_total_momentum_stays_zero_while_colloids_settle(tmp_path: Path) -> None:
     """The fluid balances gravity (VIII A, iii): to rounding at every output."""
     for name in ("cell", "reflection"):
@@ -101,7 +133,6 @@ def test_fix_srd_runs_the_reflecting_suspension(tmp_path: Path) -> None:
 REFUSALS = {
     ("srd", "cell"): r"coupling = 'cell': engine srd has .* only",
     ("md", "cell"): "engine = 'md': it has no fluid",
-    ("reference", "cell"): "coupling = 'cell': engine reference has force only",
     ("srd", "reflection"): "thermostat = 'monte_carlo': fix srd rescales",
 }
 

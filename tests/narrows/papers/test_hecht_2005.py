@@ -17,7 +17,7 @@ def test_runs_can_be_run(quality: Quality, tmp_path: Path) -> None:
     plan = Plan(PAPER, PAPER.figures, quality, tmp_path)
     for run in plan.runs:
         check_engine(run.scene, run.engine)
-    assert len(plan.runs) == 7
+    assert len(plan.runs) == 29
 
 
 def test_every_printed_time_but_the_misprint_agrees() -> None:
