@@ -73,7 +73,7 @@ def open_trajectory(
     return atoms
 
 
-def reach_of(atoms: Any, axis: str) -> tuple[float, float, float, float]:
+def reach_of(atoms: Any, axis: str, start: int = 0) -> tuple[float, float, float, float]:
     """Least and greatest position along an axis, and two surfaces a little within.
 
     Raises:
@@ -81,9 +81,9 @@ def reach_of(atoms: Any, axis: str) -> tuple[float, float, float, float]:
     """
     coordinate = AlongAxis(atoms, axis)
     trajectory = coordinate.trajectory
-    if len(trajectory) < 2:
-        raise DiffusivityError(f"{len(trajectory)} frames; at least 2 are needed")
-    frames = np.unique(np.linspace(0, len(trajectory) - 1, 200).astype(int))
+    if len(trajectory) - start < 2:
+        raise DiffusivityError(f"{len(trajectory) - start} frames; at least 2 are needed")
+    frames = np.unique(np.linspace(start, len(trajectory) - 1, 200).astype(int))
     seen = []
     for frame in frames:
         trajectory[int(frame)]
@@ -104,12 +104,14 @@ def estimate_all(
     low: float | None = None,
     high: float | None = None,
     estimators: tuple[str, ...] = ESTIMATORS,
+    start: int = 0,
 ) -> tuple[list[Estimated], list[str]]:
     """D along an axis by each estimator; and one line for each that the data do not suffice for.
 
     Args:
         low, high: the two surfaces of colours and first passage; by default beyond either lies a
             twentieth of the particles.
+        start: first frame.
 
     Raises:
         DiffusivityError: for unusable parameters, or when no estimator has enough data.
@@ -117,7 +119,7 @@ def estimate_all(
     for name in estimators:
         if name not in ESTIMATORS:
             raise DiffusivityError(f"estimator = {name!r}: must be one of {', '.join(ESTIMATORS)}")
-    least, most, inner_low, inner_high = reach_of(atoms, axis)
+    least, most, inner_low, inner_high = reach_of(atoms, axis, start)
     low = inner_low if low is None else low
     high = inner_high if high is None else high
     if not least < low < high < most:
@@ -129,7 +131,7 @@ def estimate_all(
     found, missing = list[Estimated](), list[str]()
     for name in estimators:
         try:
-            found.append(_estimate(name, coordinate, (least, most), (low, high)))
+            found.append(_estimate(name, coordinate, (least, most), (low, high), start))
         except DiffusivityError as error:
             missing.append(f"{name}: {error}")
     if not found:
@@ -138,19 +140,23 @@ def estimate_all(
 
 
 def _estimate(
-    name: str, coordinate: AlongAxis, ends: tuple[float, float], surfaces: tuple[float, float]
+    name: str,
+    coordinate: AlongAxis,
+    ends: tuple[float, float],
+    surfaces: tuple[float, float],
+    start: int,
 ) -> Estimated:
     if name == "bayes":
-        frames = len(coordinate.trajectory)
+        frames = len(coordinate.trajectory) - start
         lags = [lag for lag in (1, 2, 4, 8, 16, 32) if lag <= max(1, frames // 10)]
-        results = BayesianDiffusivity(coordinate, *ends, lags=lags, samples=0).run().results
+        results = BayesianDiffusivity(coordinate, *ends, lags=lags, samples=0).run(start).results
         remark = f"lag {results.lag:g}, of {', '.join(f'{lag:g}' for lag in results.lags)}"
     elif name == "color":
-        results = ColorDiffusivity(coordinate, *surfaces).run().results
+        results = ColorDiffusivity(coordinate, *surfaces).run(start).results
         lower, upper = results.rate
         remark = f"reactions per time at the surfaces: {lower:.4g} and {upper:.4g}"
     else:
-        results = FirstPassageDiffusivity(coordinate, *surfaces).run().results
+        results = FirstPassageDiffusivity(coordinate, *surfaces).run(start).results
         remark = f"at least {int(results.trips.min())} round trips to a level"
     known = np.isfinite(results.diffusivity) & np.isfinite(results.error)
     return Estimated(
@@ -176,6 +182,12 @@ def write(found: list[Estimated], axis: str, out: Path) -> list[Path]:
         for each in found:
             rows = zip(each.positions, each.diffusivity, each.error, strict=True)
             writer.writerows((each.estimator, *row) for row in rows)
+    drawing(found, axis).savefig(picture, dpi=150)
+    return [table, picture]
+
+
+def drawing(found: list[Estimated], axis: str) -> Figure:
+    """The profiles with their errors."""
     figure = Figure(figsize=(7, 4.5), layout="constrained")
     axes = figure.subplots()
     for each in found:
@@ -190,5 +202,4 @@ def write(found: list[Estimated], axis: str, out: Path) -> list[Path]:
         ylim=(0, 1.5 * float(np.quantile(middle, 0.95))),
     )
     axes.legend()
-    figure.savefig(picture, dpi=150)
-    return [table, picture]
+    return figure

@@ -21,26 +21,32 @@ from tests.conftest import COMMANDS, ROOT
 
 pytestmark = pytest.mark.skipif(not lammps_plugin.folder(), reason="the plugin is not built")
 
-OUTPUTS = ("trajectory.lammpsdump", "observables.dat", "fluid_profile.dat")
+OUTPUTS = (
+    *("trajectory.lammpsdump", "observables.dat", "fluid_profile.dat"),
+    *("colors.dat", "reactions.dat", "speeds.dat"),
+)
 KILLS = int(os.environ.get("NARROWS_KILLS", "100"))
 DURATION = 30
 FIELDS = {"length": 24, "equilibration": 0, "gravity": 1, "duration": DURATION}
+SPHERES = {"particles": 3000, "sampling_interval": 0.75, "equilibration": 0, "duration": 90}
 ENVIRONMENT = os.environ | {
     "PYTHONPATH": str(ROOT),
     "PATH": f"{COMMANDS}:/usr/bin:/bin",
     "OMP_NUM_THREADS": "1",
 }
-RANKS = {"1 rank": 1, "2 ranks": 2}
+RANKS = {"1 rank": 1, "2 ranks": 2, "spheres": 1}
 LONGEST = 120.0  # seconds until a run that was killed has a process that ended
 
 
-def fields() -> list[str]:
-    return [word for item in FIELDS.items() for word in ("--set", "{}={}".format(*item))]
+def fields(values: dict[str, int] | dict[str, float] = FIELDS) -> list[str]:
+    return [word for item in values.items() for word in ("--set", "{}={}".format(*item))]
 
 
-def run_command(directory: Path, interval: float, ranks: int) -> list[str]:
+def run_command(directory: Path, interval: float, name: str) -> list[str]:
+    ranks = RANKS[name]
     mpi = [str(COMMANDS / "mpirun"), "-np", str(ranks)] if ranks > 1 else []
-    words = ["run", "channel", *fields(), "--checkpoint-interval", str(interval), "--resume"]
+    scene = ["pore", *fields(SPHERES)] if name == "spheres" else ["channel", *fields()]
+    words = ["run", *scene, "--checkpoint-interval", str(interval), "--resume"]
     return [*mpi, sys.executable, "-m", "narrows", *words, "--out", str(directory)]
 
 
@@ -119,7 +125,7 @@ def kills(count: int, chance: random.Random, folder: Path, names: list[str]) -> 
         command = (
             sweep_command(folder / f"whole {name}")
             if name == "sweep"
-            else run_command(folder / f"whole {name}", 20.0, RANKS[name])
+            else run_command(folder / f"whole {name}", 20.0, name)
         )
         wholly(command)
         whole[name] = outputs(Path(command[-1]))
@@ -138,7 +144,7 @@ def kills(count: int, chance: random.Random, folder: Path, names: list[str]) -> 
             command = (
                 sweep_command(directory)
                 if name == "sweep"
-                else run_command(directory, interval, RANKS[name])
+                else run_command(directory, interval, name)
             )
             size = max(map(len, whole[name].values()))
             room = chance.randrange(1000, 2 * size)
@@ -158,10 +164,14 @@ def test_a_few_kills_leave_no_trace(tmp_path: Path) -> None:
     kills(3, random.Random(3), tmp_path, ["1 rank"])
 
 
+def test_a_few_kills_of_spheres_leave_no_trace(tmp_path: Path) -> None:
+    kills(2, random.Random(4), tmp_path, ["spheres"])
+
+
 @pytest.mark.fuzz
 def test_many_kills_leave_no_trace(tmp_path: Path) -> None:
     seed = int(os.environ.get("NARROWS_KILLS_SEED", str(random.SystemRandom().randrange(10**6))))
     print(f"NARROWS_KILLS_SEED={seed}")
-    names = ["1 rank", "1 rank", "1 rank", "2 ranks", "sweep"]
+    names = ["1 rank", "1 rank", "1 rank", "2 ranks", "sweep", "spheres"]
     done = kills(KILLS, random.Random(seed), tmp_path, names)
     print("\n".join(f"{kind}: {count}" for kind, count in sorted(done.items())))
