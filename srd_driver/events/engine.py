@@ -31,7 +31,7 @@ from srd_driver.events.state import (
 
 _BUCKETS = 4  # for each particle: a ring of 4 mean times to the next event
 _BINS = 50  # of the profiles, for each diameter
-_CELLS = 3  # on a periodic axis, so that the neighbours of a cell are different cells
+_CELLS = 4  # on a periodic axis, so that images in neighbouring cells are the nearest ones
 _OVERLAP = 1e-9
 _LARGE = 20_000  # particles, from which on the state does not fit a core's own cache
 _LINE = 64  # bytes of a cache line
