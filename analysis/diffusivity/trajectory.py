@@ -17,6 +17,7 @@ from analysis.diffusivity.coordinates import AlongAxis
 from analysis.diffusivity.errors import DiffusivityError
 from analysis.diffusivity.first_passage import FirstPassageDiffusivity
 
+BINS = 20  # of the likelihood
 ESTIMATORS = ("color", "bayes", "first-passage")
 QUANTILE = 0.05  # of positions beyond which particles react, where no surfaces are given
 
@@ -58,8 +59,9 @@ def open_trajectory(
     try:
         with warnings.catch_warnings():
             warnings.simplefilter("ignore")
-            options = {} if dt is None else {"dt": dt}
-            universe = MDAnalysis.Universe(*map(str, files), **options)
+            universe = MDAnalysis.Universe(*map(str, files))
+            if dt is not None:
+                universe = _timed(files, dt)
     except Exception as error:  # each of its readers has errors of its own
         reason = " ".join(str(error).split())[:200]
         raise DiffusivityError(f"{trajectory}: MDAnalysis cannot read it: {reason}") from None
@@ -71,6 +73,14 @@ def open_trajectory(
     if len(atoms) == 0:
         raise DiffusivityError(f"select = {select!r}: no atom of {len(universe.atoms)}")
     return atoms
+
+
+def _timed(files: list[Path], dt: float) -> Any:
+    """With that time between two frames: of LAMMPS's, MDAnalysis takes `dt` for that of a step."""
+    names = [str(file) for file in files]
+    frames = MDAnalysis.Universe(*names, dt=1.0).trajectory
+    spacing = frames[1].time - frames[0].time if len(frames) > 1 else 1.0
+    return MDAnalysis.Universe(*names, dt=dt / spacing if spacing > 0 else dt)
 
 
 def reach_of(atoms: Any, axis: str, start: int = 0) -> tuple[float, float, float, float]:
@@ -105,6 +115,7 @@ def estimate_all(
     high: float | None = None,
     estimators: tuple[str, ...] = ESTIMATORS,
     start: int = 0,
+    bins: int = BINS,
 ) -> tuple[list[Estimated], list[str]]:
     """D along an axis by each estimator; and one line for each that the data do not suffice for.
 
@@ -112,6 +123,7 @@ def estimate_all(
         low, high: the two surfaces of colours and first passage; by default beyond either lies a
             twentieth of the particles.
         start: first frame.
+        bins: of the likelihood, fewer for few particles.
 
     Raises:
         DiffusivityError: for unusable parameters, or when no estimator has enough data.
@@ -131,7 +143,7 @@ def estimate_all(
     found, missing = list[Estimated](), list[str]()
     for name in estimators:
         try:
-            found.append(_estimate(name, coordinate, (least, most), (low, high), start))
+            found.append(_estimate(name, coordinate, (least, most), (low, high), start, bins))
         except DiffusivityError as error:
             missing.append(f"{name}: {error}")
     if not found:
@@ -145,11 +157,13 @@ def _estimate(
     ends: tuple[float, float],
     surfaces: tuple[float, float],
     start: int,
+    bins: int,
 ) -> Estimated:
     if name == "bayes":
         frames = len(coordinate.trajectory) - start
         lags = [lag for lag in (1, 2, 4, 8, 16, 32) if lag <= max(1, frames // 10)]
-        results = BayesianDiffusivity(coordinate, *ends, lags=lags, samples=0).run(start).results
+        analysis = BayesianDiffusivity(coordinate, *ends, bins=bins, lags=lags, samples=0)
+        results = analysis.run(start).results
         remark = f"lag {results.lag:g}, of {', '.join(f'{lag:g}' for lag in results.lags)}"
     elif name == "color":
         results = ColorDiffusivity(coordinate, *surfaces).run(start).results
