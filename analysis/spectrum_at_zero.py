@@ -13,7 +13,7 @@ Ark. Mat. 2, 423 (1953)) is summed over a grid of (tau, r), each uniform in its 
 also absent, and integrated over a. What results is a distribution of the mean about its truth,
 which holds what a run cannot know: steps so slow that it hardly resolves them. Its tails are
 heavy for short runs, and few weights in the prior (`ABSENT`, `LONGEST`) make them; they were set
-by the coverage of `benchmarks/coverage.py`, whose results are in `docs/coverage.md`.
+by the coverage of `benchmarks/interval_coverage.py`, whose results are in `docs/coverage.md`.
 
 Several runs of one system count together: each has its modes, and the spread of their means about
 the common mean is the measured part of mode 0.

@@ -17,6 +17,7 @@ from analysis.diffusivity.coordinates import AlongAxis
 from analysis.diffusivity.errors import DiffusivityError
 from analysis.diffusivity.first_passage import FirstPassageDiffusivity
 
+BINS = 20  # of the likelihood
 ESTIMATORS = ("color", "bayes", "first-passage")
 QUANTILE = 0.05  # of positions beyond which particles react, where no surfaces are given
 
@@ -58,8 +59,9 @@ def open_trajectory(
     try:
         with warnings.catch_warnings():
             warnings.simplefilter("ignore")
-            options = {} if dt is None else {"dt": dt}
-            universe = MDAnalysis.Universe(*map(str, files), **options)
+            universe = MDAnalysis.Universe(*map(str, files))
+            if dt is not None:
+                universe = _timed(files, dt)
     except Exception as error:  # each of its readers has errors of its own
         reason = " ".join(str(error).split())[:200]
         raise DiffusivityError(f"{trajectory}: MDAnalysis cannot read it: {reason}") from None
@@ -73,7 +75,15 @@ def open_trajectory(
     return atoms
 
 
-def reach_of(atoms: Any, axis: str) -> tuple[float, float, float, float]:
+def _timed(files: list[Path], dt: float) -> Any:
+    """With that time between two frames: of LAMMPS's, MDAnalysis takes `dt` for that of a step."""
+    names = [str(file) for file in files]
+    frames = MDAnalysis.Universe(*names, dt=1.0).trajectory
+    spacing = frames[1].time - frames[0].time if len(frames) > 1 else 1.0
+    return MDAnalysis.Universe(*names, dt=dt / spacing if spacing > 0 else dt)
+
+
+def reach_of(atoms: Any, axis: str, start: int = 0) -> tuple[float, float, float, float]:
     """Least and greatest position along an axis, and two surfaces a little within.
 
     Raises:
@@ -81,9 +91,9 @@ def reach_of(atoms: Any, axis: str) -> tuple[float, float, float, float]:
     """
     coordinate = AlongAxis(atoms, axis)
     trajectory = coordinate.trajectory
-    if len(trajectory) < 2:
-        raise DiffusivityError(f"{len(trajectory)} frames; at least 2 are needed")
-    frames = np.unique(np.linspace(0, len(trajectory) - 1, 200).astype(int))
+    if len(trajectory) - start < 2:
+        raise DiffusivityError(f"{len(trajectory) - start} frames; at least 2 are needed")
+    frames = np.unique(np.linspace(start, len(trajectory) - 1, 200).astype(int))
     seen = []
     for frame in frames:
         trajectory[int(frame)]
@@ -104,12 +114,16 @@ def estimate_all(
     low: float | None = None,
     high: float | None = None,
     estimators: tuple[str, ...] = ESTIMATORS,
+    start: int = 0,
+    bins: int = BINS,
 ) -> tuple[list[Estimated], list[str]]:
     """D along an axis by each estimator; and one line for each that the data do not suffice for.
 
     Args:
         low, high: the two surfaces of colours and first passage; by default beyond either lies a
             twentieth of the particles.
+        start: first frame.
+        bins: of the likelihood, fewer for few particles.
 
     Raises:
         DiffusivityError: for unusable parameters, or when no estimator has enough data.
@@ -117,7 +131,7 @@ def estimate_all(
     for name in estimators:
         if name not in ESTIMATORS:
             raise DiffusivityError(f"estimator = {name!r}: must be one of {', '.join(ESTIMATORS)}")
-    least, most, inner_low, inner_high = reach_of(atoms, axis)
+    least, most, inner_low, inner_high = reach_of(atoms, axis, start)
     low = inner_low if low is None else low
     high = inner_high if high is None else high
     if not least < low < high < most:
@@ -129,7 +143,7 @@ def estimate_all(
     found, missing = list[Estimated](), list[str]()
     for name in estimators:
         try:
-            found.append(_estimate(name, coordinate, (least, most), (low, high)))
+            found.append(_estimate(name, coordinate, (least, most), (low, high), start, bins))
         except DiffusivityError as error:
             missing.append(f"{name}: {error}")
     if not found:
@@ -138,19 +152,25 @@ def estimate_all(
 
 
 def _estimate(
-    name: str, coordinate: AlongAxis, ends: tuple[float, float], surfaces: tuple[float, float]
+    name: str,
+    coordinate: AlongAxis,
+    ends: tuple[float, float],
+    surfaces: tuple[float, float],
+    start: int,
+    bins: int,
 ) -> Estimated:
     if name == "bayes":
-        frames = len(coordinate.trajectory)
+        frames = len(coordinate.trajectory) - start
         lags = [lag for lag in (1, 2, 4, 8, 16, 32) if lag <= max(1, frames // 10)]
-        results = BayesianDiffusivity(coordinate, *ends, lags=lags, samples=0).run().results
+        analysis = BayesianDiffusivity(coordinate, *ends, bins=bins, lags=lags, samples=0)
+        results = analysis.run(start).results
         remark = f"lag {results.lag:g}, of {', '.join(f'{lag:g}' for lag in results.lags)}"
     elif name == "color":
-        results = ColorDiffusivity(coordinate, *surfaces).run().results
+        results = ColorDiffusivity(coordinate, *surfaces).run(start).results
         lower, upper = results.rate
         remark = f"reactions per time at the surfaces: {lower:.4g} and {upper:.4g}"
     else:
-        results = FirstPassageDiffusivity(coordinate, *surfaces).run().results
+        results = FirstPassageDiffusivity(coordinate, *surfaces).run(start).results
         remark = f"at least {int(results.trips.min())} round trips to a level"
     known = np.isfinite(results.diffusivity) & np.isfinite(results.error)
     return Estimated(
@@ -176,6 +196,12 @@ def write(found: list[Estimated], axis: str, out: Path) -> list[Path]:
         for each in found:
             rows = zip(each.positions, each.diffusivity, each.error, strict=True)
             writer.writerows((each.estimator, *row) for row in rows)
+    drawing(found, axis).savefig(picture, dpi=150)
+    return [table, picture]
+
+
+def drawing(found: list[Estimated], axis: str) -> Figure:
+    """The profiles with their errors."""
     figure = Figure(figsize=(7, 4.5), layout="constrained")
     axes = figure.subplots()
     for each in found:
@@ -190,5 +216,4 @@ def write(found: list[Estimated], axis: str, out: Path) -> list[Path]:
         ylim=(0, 1.5 * float(np.quantile(middle, 0.95))),
     )
     axes.legend()
-    figure.savefig(picture, dpi=150)
-    return [table, picture]
+    return figure

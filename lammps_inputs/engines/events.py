@@ -7,7 +7,8 @@ from lammps_inputs.color_outputs import SLIT_EVENT_AVERAGES, color_outputs
 from lammps_inputs.engines.engine import Engine
 from lammps_inputs.system import SIZES, TRAJECTORY, Events, System
 
-SHORTEST = 3  # diameters along a periodic axis: neighbours of a cell must be different cells
+SHORTEST = 4  # diameters along a periodic axis: of particles in neighbouring cells, the nearest
+# images must be those in these cells
 
 
 class EventDriven(Engine):

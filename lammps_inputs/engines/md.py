@@ -7,7 +7,9 @@ from typing import ClassVar
 from lammps_inputs.engines import lammps, soft_particles
 from lammps_inputs.engines.engine import LammpsEngine, Start
 from lammps_inputs.initial_state import InitialState
+from lammps_inputs.potentials.harmonic_wall import HarmonicWall
 from lammps_inputs.potentials.integrated_wall import IntegratedWall
+from lammps_inputs.potentials.pseudo_hard import PseudoHard
 from lammps_inputs.potentials.repulsive_mie import RepulsiveMie
 from lammps_inputs.system import SIZES, System, VelocityVerlet
 
@@ -24,8 +26,8 @@ class MolecularDynamics(LammpsEngine):
     """Newton's equations, or those of a thermostat, of particles alone."""
 
     name: ClassVar[str] = "md"
-    pair_potentials = (RepulsiveMie, *soft_particles.POTENTIALS)
-    wall_potentials = (IntegratedWall,)
+    pair_potentials = (RepulsiveMie, PseudoHard, *soft_particles.POTENTIALS)
+    wall_potentials = (IntegratedWall, HarmonicWall)
     motions = (VelocityVerlet, *soft_particles.MOTIONS)
     rests = True
 
@@ -81,8 +83,11 @@ class MolecularDynamics(LammpsEngine):
         if system.box.dimensions == 2:
             yield "fix plane all enforce2d"
         for name, species, potential, faces in lammps.wall_faces(system):
-            assert isinstance(potential, IntegratedWall), "problems() has checked it"
-            yield potential.table_fix(name, species, faces, f"{name}.table")
+            if isinstance(potential, IntegratedWall):
+                yield potential.table_fix(name, species, faces, f"{name}.table")
+            else:
+                assert isinstance(potential, HarmonicWall), "problems() has checked it"
+                yield potential.wall_fix(name, species, faces)
         yield from lammps.drives(system)
 
     def averages(self, system: System, start: Start) -> Iterator[str]:
@@ -98,8 +103,8 @@ class MolecularDynamics(LammpsEngine):
             about = f"initial particles of the scene {title}"
             file.writelines(lammps.particle_data(system, state, about))
         for name, _, potential, _ in lammps.wall_faces(system):
-            assert isinstance(potential, IntegratedWall), "problems() has checked it"
-            (directory / f"{name}.table").write_text(potential.table_text(), encoding="utf-8")
+            if isinstance(potential, IntegratedWall):
+                (directory / f"{name}.table").write_text(potential.table_text(), encoding="utf-8")
 
 
 def _expressions(system: System) -> dict[str, str]:

@@ -11,7 +11,7 @@ from lammps_inputs.color_outputs import EVENT_AVERAGES, color_outputs
 from lammps_inputs.engines.events import SHORTEST
 from lammps_inputs.hard_spheres import DIAMETER, HardSphereScene
 from lammps_inputs.scene import Positive
-from lammps_inputs.system import TRAJECTORY, Box, Events, Reactions, System
+from lammps_inputs.system import Box, Reactions, System
 
 
 class BulkSpheres(HardSphereScene):
@@ -34,22 +34,17 @@ class BulkSpheres(HardSphereScene):
         return float(self.volume ** (1 / 3))
 
     def build(self) -> System:
-        trajectory = (TRAJECTORY,) if self.trajectory else ()
+        reactions = Reactions(self.reaction_probabilities, centers=self.centers, cutoff=self.cutoff)
         return System(
             box=Box((self.edge,) * 3, periodic=(True,) * 3),
             clock=self.clock(),
             species=(self.species(),),
             placement=ClosePacking(),
-            motion=Events(),
-            reactions=Reactions(
-                self.reaction_probabilities, centers=self.centers, cutoff=self.cutoff
-            ),
-            outputs=(
-                *trajectory,
-                EVENT_AVERAGES,
-                *color_outputs(len(self.reaction_probabilities)),
-            ),
-            measures=("color_diffusivity", "reacted_speeds", "hard_sphere_averages"),
+            interactions=self.interactions(),
+            motion=self.motion(),
+            reactions=None if self.soft else reactions,
+            outputs=self.written(EVENT_AVERAGES, *color_outputs(len(self.reaction_probabilities))),
+            measures=self.measured(),
         )
 
     def fit_problems(self) -> Iterator[str]:

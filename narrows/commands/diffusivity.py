@@ -25,6 +25,9 @@ def diffusivity(
         float | None, typer.Option(help="lower surface [length of the file]; default: near the end")
     ] = None,
     high: Annotated[float | None, typer.Option(help="upper surface; likewise")] = None,
+    bins: Annotated[
+        int, typer.Option(help="of the likelihood; fewer where too few cross from one to the next")
+    ] = 20,
     estimators: Annotated[
         str, typer.Option("--by", metavar="LIST", help="of color, bayes, first-passage")
     ] = "color,bayes,first-passage",
@@ -37,7 +40,7 @@ def diffusivity(
         try:
             atoms = open_trajectory(trajectory, topology, select, dt)
             names = tuple(name.strip() for name in estimators.split(","))
-            found, missing = estimate_all(atoms, axis, low, high, names)
+            found, missing = estimate_all(atoms, axis, low, high, names, bins=bins)
         except DiffusivityError as error:
             complain(str(error))
             raise typer.Exit(2) from None

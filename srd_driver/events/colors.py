@@ -10,8 +10,8 @@ surface and q -> q + p (1 - q) at the second: the exact mean of the label over a
 from typing import Any
 
 import numpy as np
-from numba import njit
 
+from srd_driver.events.compiling import compiled
 from srd_driver.events.state import (
     POSITION,
     SPEED_BIN,
@@ -29,7 +29,7 @@ def scrambled(word: Any) -> Any:
     return word ^ (word >> np.uint64(31))
 
 
-scrambled = njit(cache=True, _nrt=False)(scrambled)
+scrambled = compiled(scrambled)
 
 
 def lot_of(seed: Any, m: Any, i: Any, visit: Any) -> Any:
@@ -38,7 +38,7 @@ def lot_of(seed: Any, m: Any, i: Any, visit: Any) -> Any:
     return float(scrambled(word + np.uint64(visit)) >> np.uint64(11)) * 2.0**-53
 
 
-lot_of = njit(cache=True, _nrt=False)(lot_of)
+lot_of = compiled(lot_of)
 
 
 def react(c: Any, m: Any, i: Any, surface: Any, speed: Any) -> None:
@@ -63,7 +63,7 @@ def react(c: Any, m: Any, i: Any, surface: Any, speed: Any) -> None:
         c.speeds[1, k, bin_] += reacting
 
 
-react = njit(cache=True, _nrt=False)(react)
+react = compiled(react)
 
 
 def entering(s: Any, c: Any, i: Any, j: Any, now: Any) -> Any:
@@ -96,7 +96,7 @@ def entering(s: Any, c: Any, i: Any, j: Any, now: Any) -> Any:
     return result
 
 
-entering = njit(cache=True, _nrt=False)(entering)
+entering = compiled(entering)
 
 
 def pass_surfaces(s: Any, c: Any, i: Any, now: Any) -> None:
@@ -115,7 +115,7 @@ def pass_surfaces(s: Any, c: Any, i: Any, now: Any) -> None:
                     react(c, own, j, 1, speed)
 
 
-pass_surfaces = njit(cache=True, _nrt=False)(pass_surfaces)
+pass_surfaces = compiled(pass_surfaces)
 
 
 def settle(s: Any, c: Any) -> None:
@@ -130,4 +130,4 @@ def settle(s: Any, c: Any) -> None:
     c.settled[0] = now
 
 
-settle = njit(cache=True, _nrt=False)(settle)
+settle = compiled(settle)

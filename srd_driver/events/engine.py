@@ -18,7 +18,9 @@ from srd_driver.events.profiles import Profile
 from srd_driver.events.state import (
     COLLISIONS,
     CROSSINGS,
+    LISTED,
     REPREDICTED,
+    ROW,
     SPEED_BINS,
     VIRIAL,
     WALL_HITS,
@@ -29,10 +31,11 @@ from srd_driver.events.state import (
 
 _BUCKETS = 4  # for each particle: a ring of 4 mean times to the next event
 _BINS = 50  # of the profiles, for each diameter
-_CELLS = 3  # on a periodic axis, so that the neighbours of a cell are different cells
+_CELLS = 4  # on a periodic axis, so that images in neighbouring cells are the nearest ones
 _OVERLAP = 1e-9
+_LARGE = 20_000  # particles, from which on the state does not fit a core's own cache
+_LINE = 64  # bytes of a cache line
 _CELL_OCCUPATION = 0.5  # of dilute systems; in dense ones cells are a diameter wide
-_LINE = 16  # numbers in a cache line
 
 
 @dataclass(frozen=True)
@@ -286,7 +289,9 @@ class HardSpheres:
         engine = cls.__new__(cls)
         with np.load(file) as saved:
             engine.dimensions = int(saved["dimensions"])
-            engine._spheres = Spheres(*(_loaded(saved[f"s_{n}"]) for n in Spheres._fields))
+            engine._spheres = _aligned(
+                Spheres(*(_loaded(saved[f"s_{n}"]) for n in Spheres._fields))
+            )
             engine._colors = Colors(*(_loaded(saved[f"c_{n}"]) for n in Colors._fields))
         walls = engine._spheres.wall[: engine.dimensions]
         engine.walls = tuple(int(axis) for axis in np.flatnonzero(walls))
@@ -372,8 +377,8 @@ def _spheres(
     # the spheres of a cell lie in a box a diameter wider, where none pack denser than crystals do
     crystal = 2 / math.sqrt(3) if dimensions == 2 else math.sqrt(2)
     capacity = int(crystal * float(np.prod(size[:dimensions] / diameter + 1)))
-    columns = _LINE * math.ceil((1 + capacity) / _LINE)
-    return Spheres(
+    room = 27 * capacity + LISTED + ROW
+    spheres = Spheres(
         diameter=float(diameter),
         lengths=lengths,
         low=low,
@@ -384,17 +389,35 @@ def _spheres(
         step=step,
         ways=ways,
         inverse_width=1.0,
+        large=int(count > _LARGE),
         body=body,
         link=np.zeros((count, 8), dtype=np.int32),
         place=np.zeros((count, 3), dtype=np.int32),
         image=np.zeros((count, 3), dtype=np.int32),
-        content=np.zeros((stride, columns), dtype=np.int32),
-        near=np.zeros(27 * capacity + 3, dtype=np.int32),
+        content=np.zeros((stride, 1 + LISTED), dtype=np.int32),
+        spill=np.zeros((stride, max(capacity - LISTED, 1)), dtype=np.int32),
+        near=np.zeros(room, dtype=np.int32),
+        rows=np.zeros((8, room)),
+        times=np.zeros(room),
         bucket=np.zeros(0, dtype=np.int32),
         clock=np.zeros(2),
         tally=np.zeros(4, dtype=np.int64),
         sums=np.zeros(7),
     )
+    return _aligned(spheres)
+
+
+def _aligned(spheres: Spheres) -> Spheres:
+    """The same with arrays that begin where cache lines do: no row of 64 bytes is in two."""
+    fields: dict[str, Any] = spheres._asdict()
+    for name, array in fields.items():
+        if isinstance(array, np.ndarray):
+            room = np.zeros(array.nbytes + _LINE, dtype=np.uint8)
+            start = -room.ctypes.data % _LINE
+            fields[name] = room[start : start + array.nbytes].view(array.dtype)
+            fields[name] = fields[name].reshape(array.shape)
+            fields[name][:] = array
+    return Spheres(**fields)
 
 
 def _colors(reactions: WallReactions | PairReactions | None, s: Spheres, seed: int) -> Colors:

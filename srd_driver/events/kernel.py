@@ -8,9 +8,9 @@ removed but, when its time comes, the particle's next event is predicted anew.
 from typing import Any
 
 import numpy as np
-from numba import njit
 
 from srd_driver.events.colors import pass_surfaces, react, settle
+from srd_driver.events.compiling import compiled, inlined
 from srd_driver.events.prediction import predict
 from srd_driver.events.queue import first, insert, remove
 from srd_driver.events.state import (
@@ -19,6 +19,7 @@ from srd_driver.events.state import (
     COUNT,
     CROSSINGS,
     EVENT,
+    LISTED,
     PARTNER,
     PARTNER_COUNT,
     POSITION,
@@ -31,21 +32,36 @@ from srd_driver.events.state import (
 )
 
 
+def member(s: Any, cell: Any, k: Any) -> Any:
+    return s.content[cell, 1 + k] if k < LISTED else s.spill[cell, k - LISTED]
+
+
+def put(s: Any, cell: Any, k: Any, i: Any) -> None:
+    if k < LISTED:
+        s.content[cell, 1 + k] = i
+    else:
+        s.spill[cell, k - LISTED] = i
+
+
+member = inlined(member)
+put = inlined(put)
+
+
 def enter_cell(s: Any, i: Any, cell: Any) -> None:
     s.link[i, CELL] = cell
-    inside = s.content[cell, 0] + 1
-    s.content[cell, inside] = i
-    s.content[cell, 0] = inside
+    inside = s.content[cell, 0]
+    s.content[cell, 0] = inside + 1
+    put(s, cell, inside, i)
 
 
 def leave_cell(s: Any, i: Any) -> None:
     cell = s.link[i, CELL]
-    inside = s.content[cell, 0]
-    k = 1
-    while s.content[cell, k] != i:
+    last = s.content[cell, 0] - 1
+    k = 0
+    while member(s, cell, k) != i:
         k += 1
-    s.content[cell, k] = s.content[cell, inside]
-    s.content[cell, 0] = inside - 1
+    put(s, cell, k, member(s, cell, last))
+    s.content[cell, 0] = last
 
 
 def move(s: Any, i: Any, now: Any) -> None:
@@ -56,9 +72,9 @@ def move(s: Any, i: Any, now: Any) -> None:
     s.body[i, TIME] = now
 
 
-enter_cell = njit(cache=True, _nrt=False, inline="always")(enter_cell)
-leave_cell = njit(cache=True, _nrt=False, inline="always")(leave_cell)
-move = njit(cache=True, _nrt=False, inline="always")(move)
+enter_cell = inlined(enter_cell)
+leave_cell = inlined(leave_cell)
+move = inlined(move)
 
 
 def collide(s: Any, c: Any, i: Any, j: Any, now: Any) -> None:
@@ -94,7 +110,7 @@ def collide(s: Any, c: Any, i: Any, j: Any, now: Any) -> None:
     s.link[j, COUNT] += 1
 
 
-collide = njit(cache=True, _nrt=False, inline="always")(collide)
+collide = inlined(collide)
 
 
 def leave(s: Any, c: Any, i: Any, axis: Any, side: Any, now: Any) -> None:
@@ -125,7 +141,7 @@ def leave(s: Any, c: Any, i: Any, axis: Any, side: Any, now: Any) -> None:
     s.tally[CROSSINGS] += 1
 
 
-leave = njit(cache=True, _nrt=False, inline="always")(leave)
+leave = inlined(leave)
 
 
 def advance(s: Any, c: Any, until: Any) -> None:
@@ -159,7 +175,7 @@ def advance(s: Any, c: Any, until: Any) -> None:
         settle(s, c)
 
 
-advance = njit(cache=True, _nrt=False, nogil=True)(advance)
+advance = compiled(advance, nogil=True)
 
 
 def fill_cells(s: Any) -> None:
@@ -200,8 +216,8 @@ def nearest(s: Any) -> Any:
                 for nx in range(s.ways[0, px]):
                     cell = s.link[i, CELL] + s.step[0, px, nx]
                     cell += s.step[1, py, ny] + s.step[2, pz, nz]
-                    for k in range(1, 1 + s.content[cell, 0]):
-                        j = s.content[cell, k]
+                    for k in range(s.content[cell, 0]):
+                        j = member(s, cell, k)
                         if j > i:
                             square = 0.0
                             for axis in range(3):
@@ -215,7 +231,7 @@ def nearest(s: Any) -> Any:
     return first_of, second, np.sqrt(least)
 
 
-fill_cells = njit(cache=True, _nrt=False)(fill_cells)
-predict_all = njit(cache=True, _nrt=False)(predict_all)
-file_all = njit(cache=True, _nrt=False)(file_all)
-nearest = njit(cache=True, _nrt=False)(nearest)
+fill_cells = compiled(fill_cells)
+predict_all = compiled(predict_all)
+file_all = compiled(file_all)
+nearest = compiled(nearest)

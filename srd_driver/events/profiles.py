@@ -4,10 +4,10 @@ from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
-from numba import njit
 from numpy.typing import NDArray
 
 from lammps_inputs.system import Array
+from srd_driver.events.compiling import compiled
 from srd_driver.events.state import POSITION, TIME, VELOCITY
 
 
@@ -55,7 +55,7 @@ def add(c: Any, bin_: Any, m: Any, i: Any, velocity: Any) -> None:
         c.current[1, bin_, k] += q * velocity
 
 
-add = njit(cache=True, _nrt=False)(add)
+add = compiled(add)
 
 
 def sample(s: Any, c: Any) -> None:
@@ -90,4 +90,4 @@ def sample(s: Any, c: Any) -> None:
     c.samples[0] += 1
 
 
-sample = njit(cache=True, _nrt=False)(sample)
+sample = compiled(sample)

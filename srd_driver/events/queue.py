@@ -7,8 +7,8 @@ is looked for. Events beyond the ring wait in its last bucket and are filed agai
 
 from typing import Any
 
-from numba import njit
-
+from srd_driver.events.compiling import inlined
+from srd_driver.events.look_ahead import look_ahead
 from srd_driver.events.state import BUCKET, EVENT, NEXT, PREVIOUS
 
 
@@ -37,8 +37,8 @@ def remove(s: Any, i: Any) -> None:
         s.link[follower, PREVIOUS] = leader
 
 
-insert = njit(cache=True, _nrt=False, inline="always")(insert)
-remove = njit(cache=True, _nrt=False, inline="always")(remove)
+insert = inlined(insert)
+remove = inlined(remove)
 
 
 def first(s: Any, until: Any) -> Any:
@@ -62,6 +62,8 @@ def first(s: Any, until: Any) -> Any:
         if earliest >= 0 or current >= last:
             return earliest
         s.clock[1] = current + 1
+        if s.large:
+            look_ahead(s)
 
 
-first = njit(cache=True, _nrt=False, inline="always")(first)
+first = inlined(first)

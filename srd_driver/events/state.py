@@ -17,6 +17,8 @@ Integers = NDArray[np.int32]
 POSITION, VELOCITY, TIME, EVENT = 0, 3, 6, 7
 # columns of `Spheres.link`; one is left to fill half a cache line
 PARTNER, PARTNER_COUNT, COUNT, NEXT, PREVIOUS, BUCKET, CELL = range(7)
+LISTED = 3  # particles in a row of `Spheres.content`
+ROW = 8  # numbers in a cache line, and in a register
 # entries of `Spheres.tally`
 COLLISIONS, WALL_HITS, CROSSINGS, REPREDICTED = range(4)
 # entries of `Spheres.sums`: sum of sigma |b|, and momentum given to the six walls
@@ -39,6 +41,7 @@ class Spheres(NamedTuple):
         step, ways: neighbours of a cell along an axis, as steps in the cell number (3, longest, 3),
             and how many there are (3, longest).
         inverse_width: of a bucket of the queue.
+        large: 1 where `look_ahead` pays, else 0.
         body: (N, 8), position and velocity at the particle's own time, that time, and the time of
             its next event.
         link: (N, 8): partner of the next event (or -1 - 2 axis - side: end of the cell) and the
@@ -46,8 +49,11 @@ class Spheres(NamedTuple):
             in the bucket; bucket; cell.
         place: cell coordinates, (N, 3).
         image: box lengths to add to the positions, (N, 3).
-        content: number of particles in each cell, and which, (cells, columns).
-        near: room for the particles of 27 cells.
+        content: number of particles in each cell, and the first three, (cells, 1 + `LISTED`).
+        spill: the others, which few cells have, (cells, capacity - `LISTED`).
+        near: room for the particles of 27 cells, and to fill a `ROW`.
+        rows: room for what `body` has of them, (8, as many).
+        times: room for the times of their contacts.
         bucket: first particle of each bucket.
         clock: (2,), the time, and the number of the bucket that is being emptied.
         tally: numbers of collisions, wall hits, cell crossings and renewed predictions, (4,).
@@ -64,12 +70,16 @@ class Spheres(NamedTuple):
     step: Integers
     ways: Integers
     inverse_width: float
+    large: int
     body: Array
     link: Integers
     place: Integers
     image: Integers
     content: Integers
+    spill: Integers
     near: Integers
+    rows: Array
+    times: Array
     bucket: Integers
     clock: Array
     tally: NDArray[np.int64]

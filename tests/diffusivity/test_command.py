@@ -23,6 +23,12 @@ def files(tmp_path_factory: pytest.TempPathFactory) -> dict[str, Path]:
         for frame in universe.trajectory:
             frame.dimensions = [10, 10, 10, 90, 90, 90]
         universe.atoms.write(str(folder / name), frames=frames)
+    with (folder / "walk.lammpsdump").open("w") as file:
+        for number, frame in enumerate(universe.trajectory):
+            file.write(f"ITEM: TIMESTEP\n{50 * number}\nITEM: NUMBER OF ATOMS\n100\n")
+            file.write("ITEM: BOX BOUNDS pp pp pp\n0 10\n0 10\n0 10\nITEM: ATOMS id type x y z\n")
+            for i, row in enumerate(frame.positions.tolist(), start=1):
+                file.write(f"{i} 1 {row[0]} {row[1]} {row[2]}\n")
     return {path.suffix[1:]: path for path in folder.iterdir()}
 
 
@@ -43,7 +49,11 @@ def profiles(folder: Path, by: str) -> dict[str, np.ndarray[Any, Any]]:
 
 @pytest.mark.parametrize(
     ("kind", "by", "given"),
-    [("xtc", "color,bayes", ()), ("dcd", "color", ("--dt", str(walks.FRAME)))],
+    [
+        ("xtc", "color,bayes", ()),
+        ("dcd", "color", ("--dt", str(walks.FRAME))),
+        ("lammpsdump", "color", ("--dt", str(walks.FRAME))),
+    ],
 )
 def test_a_trajectory_of_others(
     files: dict[str, Path],
@@ -54,7 +64,8 @@ def test_a_trajectory_of_others(
     command: Run,
 ) -> None:
     told = command(
-        *("narrows", "diffusivity", files[kind], "--topology", files["gro"]),
+        *("narrows", "diffusivity", files[kind]),
+        *(() if kind == "lammpsdump" else ("--topology", files["gro"])),
         *("--axis", "z", "--out", tmp_path, "--by", by, *given),
     )
     assert all(f"{name}: D = " in told.stdout for name in by.split(","))
@@ -77,6 +88,7 @@ BAD = [
     (["{xtc}", "--topology", "{gro}", "--select", "nonsense ("], "select = 'nonsense (': "),
     (["{xtc}", "--topology", "{gro}", "--low", "3", "--high", "1"], "low = 3, high = 1: must be"),
     (["{xtc}", "--topology", "{gro}", "--high", "99"], "within the positions"),
+    (["{xtc}", "--topology", "{gro}", "--bins", "2", "--by", "bayes"], "bins: 2; at least 3 are"),
     (["{xtc}", "--topology", "{gro}", "--by", "guess"], "estimator = 'guess': must be one of"),
 ]
 

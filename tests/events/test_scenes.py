@@ -9,6 +9,7 @@ from typing import Any
 import numpy as np
 import pytest
 
+import lammps_plugin
 from analysis import RunDirectory, RunDirectoryError, analyze, tabulate
 from lammps_inputs import Scene, SceneError, all_engines, make_scene
 from lammps_inputs.deck import check_engine, write_deck
@@ -38,7 +39,7 @@ BAD: list[tuple[str, dict[str, Any], str]] = [
     ("pore", {"particles": 0}, "particles = 0: should be greater than or equal to 1"),
     ("pore", {"particles": 1.5}, "particles = 1.5: should be a valid integer"),
     ("pore", {"particles": 10**8}, "particles = 100000000: should be less than or equal to"),
-    ("pore", {"particles": 5}, "particles = 5: walls of edge 1.22; they must have at least 3, wi"),
+    ("pore", {"particles": 5}, "particles = 5: walls of edge 1.22; they must have at least 4, wi"),
     ("pore", {"packing_fraction": 0}, "packing_fraction = 0: should be greater than 0"),
     ("pore", {"packing_fraction": 0.8}, "packing_fraction = 0.8: should be less than 0.740"),
     ("pore", {"packing_fraction": 0.7}, r"packing_fraction = 0.7: 1000 spheres .* do not fit"),
@@ -57,6 +58,14 @@ BAD: list[tuple[str, dict[str, Any], str]] = [
     ("pore", {"equilibration": -1}, "equilibration = -1: should be greater than or equal to 0"),
     ("pore", {"seed": 0}, "seed = 0: should be greater than or equal to 1"),
     ("pore", {"gravity": 1}, "gravity = 1: unknown field; pore has"),
+    ("pore", {"spheres": "elastic"}, "spheres = 'elastic': should be 'hard', 'pseudo_hard' or"),
+    ("pore", {"spheres": "wca"}, "sampling_interval = 20.0: too long to lay colours on the paths"),
+    (
+        "pore",
+        {"spheres": "wca", "sampling_interval": 0.2, "wall_stiffness": 9e4},
+        "wall_stiffness = 90000.0: too stiff for a time step of 0.001; must be at most 4e",
+    ),
+    ("pore", {"time_step": 0.1}, "time_step = 0.1: should be less than or equal to 0.01"),
     ("bulk_spheres", {"cutoff": 1}, "cutoff = 1.0: must be above 1 and below half the edge"),
     ("bulk_spheres", {"cutoff": 6}, "cutoff = 6.0: must be above 1 and below half the edge"),
     ("bulk_spheres", {"centers": 0}, "centers = 0: should be greater than or equal to 1"),
@@ -164,6 +173,33 @@ def test_the_bulk_has_the_pressure_of_carnahan_and_starling(tmp_path: Path) -> N
     assert found["value"] == pytest.approx(found["theory"], rel=0.02)
     with (tmp_path / "run" / "diffusivity.csv").open() as file:
         assert next(csv.reader(file))[1] == "r"
+
+
+@pytest.mark.skipif(not lammps_plugin.folder(), reason="the plugin is not built")
+@pytest.mark.parametrize("spheres", ["pseudo_hard", "wca"])
+def test_soft_spheres_leave_paths(spheres: str, tmp_path: Path) -> None:
+    """Engine md: kBT is 1, nothing leaves the pore, colours are laid on the paths."""
+    scene = make_scene(
+        "pore",
+        particles=120,
+        packing_fraction=0.2,
+        spheres=spheres,
+        sampling_interval=0.2,
+        equilibration=4.0,
+        duration=30.0,
+    )
+    assert default_engine(scene.system) == "md"
+    with pytest.raises(SceneError, match="engine events has no such"):
+        check_engine(scene, "events")
+    with Simulation(scene, directory=tmp_path / "run") as simulation:
+        simulation.finish()
+    summary = analyze(tmp_path / "run")
+    assert summary["temperature"]["value"] == pytest.approx(1, abs=0.01)
+    assert 0.1 < summary["self_diffusion"]["value"] < 0.5
+    z = RunDirectory(tmp_path / "run").particles().positions[:, :, 2]
+    assert z.min() > 0.4  # the harmonic wall at 0.5 lets kBT in by 0.014
+    assert z.max() < 4.6
+    assert 0.1 < summary["path_diffusivity"]["bayes"]["middle"] < 0.5
 
 
 def test_too_few_outputs_are_counted(tmp_path: Path) -> None:

@@ -9,6 +9,7 @@ import os
 import shutil
 import tempfile
 from collections.abc import Callable
+from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
@@ -30,7 +31,6 @@ from srd_driver.resume import stored_fields
 from srd_driver.status import status_of, stored_run
 from tests.fuzz.damage import JSON_VALUES, Damage, damages
 
-OUTPUTS = ("trajectory.lammpsdump", "observables.dat", "fluid_profile.dat")
 CASES = int(os.environ.get("NARROWS_FUZZ_CASES", "3000"))
 SHORT: dict[str, Any] = {
     "length": 12,
@@ -41,6 +41,15 @@ SHORT: dict[str, Any] = {
     "wall_sigma": 1.0,
     "collision_time": 0.1,
     "md_steps_per_collision": 20,
+    "equilibration": 0,
+    "duration": 2.0,
+    "sampling_interval": 0.2,
+}
+SPHERES: dict[str, Any] = {
+    "particles": 60,
+    "packing_fraction": 0.2,
+    "reaction_probabilities": [0.1, 1.0],
+    "trajectory": True,
     "equilibration": 0,
     "duration": 2.0,
     "sampling_interval": 0.2,
@@ -59,47 +68,112 @@ def cases(count: int, **options: Any) -> Callable[[Any], Any]:
 
 
 quick = cases(25, derandomize=True)
+few = cases(8, derandomize=True)
 long = cases(CASES, print_blob=True)
 
 
-def scene(seed: int = 1) -> Scene:
-    return make_scene("channel", seed=seed, **SHORT)
+def numbers_of_a_channel(run: RunDirectory) -> list[Any]:
+    """All that measures ask of a run."""
+    table, profile = run.table(), run.profile()
+    return [
+        *(table.steps, *table.columns.values()),
+        *(profile.steps, profile.y, profile.counts, profile.velocity_x),
+        *(np.array(run.times(table.steps)), run.acceleration("colloids")),
+        *(np.array(run.sampled(table.steps)), np.array([run.length, run.width])),
+    ]
+
+
+def numbers_of_spheres(run: RunDirectory) -> list[Any]:
+    """Likewise, of colours too."""
+    found: list[Any] = []
+    for name in ("observables", "reactions"):
+        table = run.table(name)
+        found += [table.steps, *table.columns.values()]
+    for name in ("colors", "speeds"):
+        bins = run.bins(name)
+        found += [bins.steps, bins.positions, bins["chances_1"], bins["labels_2"]]
+    return found
+
+
+@dataclass(frozen=True)
+class Kind:
+    """Runs of one engine.
+
+    Attributes:
+        scene, fields, engine: what runs.
+        outputs: its files.
+        numbers: that measures ask of it.
+        checkpoints: half way, and at the end.
+    """
+
+    scene: str
+    fields: dict[str, Any]
+    engine: str
+    outputs: tuple[str, ...]
+    numbers: Callable[[RunDirectory], list[Any]]
+    checkpoints: tuple[str, str]
+
+    def make(self, seed: int = 1) -> Scene:
+        return make_scene(self.scene, seed=seed, **self.fields)
+
+    def files(self, half_way: bool) -> list[str]:
+        checkpoint = self.checkpoints[0 if half_way else 1]
+        return [*self.outputs, "manifest.json", "progress.json", "scene.toml", checkpoint]
+
+    def read(self, directory: Path) -> list[Any]:
+        run = RunDirectory(directory)
+        particles = run.particles()
+        return [
+            *self.numbers(run),
+            *(particles.steps, particles.positions, particles.velocities),
+            np.array([each.mass for each in run.manifest.system.species]),
+        ]
+
+
+CHANNEL = Kind(
+    "channel",
+    SHORT,
+    "reference",
+    ("trajectory.lammpsdump", "observables.dat", "fluid_profile.dat"),
+    numbers_of_a_channel,
+    ("checkpoint.160.npz", "checkpoint.400.npz"),
+)
+PORE = Kind(
+    "pore",
+    SPHERES,
+    "events",
+    ("trajectory.lammpsdump", "observables.dat", "colors.dat", "reactions.dat", "speeds.dat"),
+    numbers_of_spheres,
+    ("checkpoint.8.npz", "checkpoint.20.npz"),
+)
 
 
 class Runs:
     """A finished run, one half way, and the same of another seed."""
 
-    def __init__(self, folder: Path) -> None:
+    def __init__(self, kind: Kind, folder: Path) -> None:
+        self.kind = kind
         self.finished, self.half_way = folder / "finished", folder / "half_way"
         self.others = {self.finished: folder / "finished2", self.half_way: folder / "half_way2"}
         for seed, (finished, half_way) in enumerate(
             ((self.finished, self.half_way), tuple(self.others.values())), start=1
         ):
-            with Simulation(scene(seed), "reference", finished) as run:
+            with Simulation(kind.make(seed), kind.engine, finished) as run:
                 run.finish()
-            with Simulation(scene(seed), "reference", half_way, False, 0.4) as run:
+            with Simulation(kind.make(seed), kind.engine, half_way, False, 0.4) as run:
                 run.run(0.8)
-        self.numbers = numbers(self.finished)
-        self.outputs = [(self.finished / name).read_bytes() for name in OUTPUTS]
+        self.numbers = kind.read(self.finished)
+        self.outputs = [(self.finished / name).read_bytes() for name in kind.outputs]
 
 
 @pytest.fixture(scope="module")
 def runs(tmp_path_factory: pytest.TempPathFactory) -> Runs:
-    return Runs(tmp_path_factory.mktemp("runs"))
+    return Runs(CHANNEL, tmp_path_factory.mktemp("runs"))
 
 
-def numbers(directory: Path) -> list[Any]:
-    """All that measures ask of a run."""
-    run = RunDirectory(directory)
-    table, profile, particles = run.table(), run.profile(), run.particles()
-    return [
-        *(table.steps, *table.columns.values()),
-        *(profile.steps, profile.y, profile.counts, profile.velocity_x),
-        *(particles.steps, particles.positions, particles.velocities),
-        *(np.array(run.times(table.steps)), run.acceleration("colloids")),
-        *(np.array(run.sampled(table.steps)), np.array([run.length, run.width])),
-        np.array([each.mass for each in run.manifest.system.species]),
-    ]
+@pytest.fixture(scope="module")
+def spheres(tmp_path_factory: pytest.TempPathFactory) -> Runs:
+    return Runs(PORE, tmp_path_factory.mktemp("spheres"))
 
 
 def one_line(error: Exception) -> None:
@@ -133,7 +207,7 @@ def check_damaged(start: Path, damage: Damage, runs: Runs) -> None:
         except (RunError, RunDirectoryError, SceneError) as error:
             one_line(error)
         try:
-            found = numbers(directory)
+            found = runs.kind.read(directory)
         except RunDirectoryError as error:
             one_line(error)
         else:
@@ -145,49 +219,73 @@ def check_damaged(start: Path, damage: Damage, runs: Runs) -> None:
             again = make_scene(str(fields.pop("scene")), **fields)
             small = again.system.work < 1e6
             if small:
-                with Simulation(again, "reference", directory, resume=True) as run:
+                with Simulation(again, runs.kind.engine, directory, resume=True) as run:
                     run.finish()
         except (RunError, RunDirectoryError, SceneError) as error:
             one_line(error)
         else:
             if small and start == runs.half_way and unchanged_by_hand(directory):
-                assert [(directory / name).read_bytes() for name in OUTPUTS] == runs.outputs
+                assert [
+                    (directory / name).read_bytes() for name in runs.kind.outputs
+                ] == runs.outputs
 
 
-def run_files(half_way: bool) -> list[str]:
-    checkpoint = "checkpoint.160.npz" if half_way else "checkpoint.400.npz"
-    return [*OUTPUTS, "manifest.json", "progress.json", "scene.toml", checkpoint]
-
-
-def test_the_files_of_a_run_are_known(runs: Runs) -> None:
-    assert files(runs.half_way) == sorted(run_files(True))
-    assert files(runs.finished) == sorted(run_files(False))
+def test_the_files_of_a_run_are_known(runs: Runs, spheres: Runs) -> None:
+    for each in (runs, spheres):
+        assert files(each.half_way) == sorted(each.kind.files(True))
+        assert files(each.finished) == sorted(each.kind.files(False))
 
 
 @quick
-@given(damage=damages(run_files(True)))
-def test_a_damaged_run_half_way(damage: Damage, runs: Runs) -> None:
+@given(damage=damages(CHANNEL.files(True)))
+def test_a_damaged_half_way_run(damage: Damage, runs: Runs) -> None:
     check_damaged(runs.half_way, damage, runs)
 
 
 @quick
-@given(damage=damages(run_files(False)))
+@given(damage=damages(CHANNEL.files(False)))
 def test_a_damaged_finished_run(damage: Damage, runs: Runs) -> None:
     check_damaged(runs.finished, damage, runs)
 
 
+@few
+@given(damage=damages(PORE.files(True)))
+def test_a_damaged_half_way_run_of_spheres(damage: Damage, spheres: Runs) -> None:
+    check_damaged(spheres.half_way, damage, spheres)
+
+
+@few
+@given(damage=damages(PORE.files(False)))
+def test_a_damaged_finished_run_of_spheres(damage: Damage, spheres: Runs) -> None:
+    check_damaged(spheres.finished, damage, spheres)
+
+
 @pytest.mark.fuzz
 @long
-@given(damage=damages(run_files(True)))
-def test_many_damaged_runs_half_way(damage: Damage, runs: Runs) -> None:
+@given(damage=damages(CHANNEL.files(True)))
+def test_many_damaged_half_way_runs(damage: Damage, runs: Runs) -> None:
     check_damaged(runs.half_way, damage, runs)
 
 
 @pytest.mark.fuzz
 @long
-@given(damage=damages(run_files(False)))
+@given(damage=damages(CHANNEL.files(False)))
 def test_many_damaged_finished_runs(damage: Damage, runs: Runs) -> None:
     check_damaged(runs.finished, damage, runs)
+
+
+@pytest.mark.fuzz
+@long
+@given(damage=damages(PORE.files(True)))
+def test_many_damaged_half_way_runs_of_spheres(damage: Damage, spheres: Runs) -> None:
+    check_damaged(spheres.half_way, damage, spheres)
+
+
+@pytest.mark.fuzz
+@long
+@given(damage=damages(PORE.files(False)))
+def test_many_damaged_finished_runs_of_spheres(damage: Damage, spheres: Runs) -> None:
+    check_damaged(spheres.finished, damage, spheres)
 
 
 @pytest.fixture(scope="module")

@@ -22,7 +22,10 @@ from tests.conftest import COMMANDS, ROOT
 
 pytestmark = pytest.mark.skipif(not lammps_plugin.folder(), reason="the plugin is not built")
 
-OUTPUTS = ("trajectory.lammpsdump", "observables.dat", "fluid_profile.dat")
+OUTPUTS = (
+    *("trajectory.lammpsdump", "observables.dat", "fluid_profile.dat"),
+    *("colors.dat", "reactions.dat", "speeds.dat"),
+)
 KILLS = int(os.environ.get("NARROWS_KILLS", "100"))
 DURATION = 30
 FIELDS = {"length": 24, "equilibration": 0, "gravity": 1, "duration": DURATION}
@@ -31,11 +34,24 @@ ENVIRONMENT = os.environ | {
     "PATH": f"{COMMANDS}:/usr/bin:/bin",
     "OMP_NUM_THREADS": "1",
 }
-RANKS = {"1 rank": 1, "2 ranks": 2, "cell": 1, "reflection": 1}
-SUSPENSIONS = {  # by coupling
-    "cell": {"cells": 6, "density": 10, "md_steps_per_collision": 150, "duration": 150},
-    "reflection": {"coupling": "reflection", "cells": 15, "potential": "hertz", "duration": 60},
+OTHERS: dict[str, tuple[str, Mapping[str, object]]] = {  # scene and fields
+    "cell": (
+        "claylike",
+        {"cells": 6, "density": 10, "md_steps_per_collision": 150, "duration": 150, "peclet": 1},
+    ),
+    "reflection": (
+        "claylike",
+        {
+            "coupling": "reflection",
+            "cells": 15,
+            "potential": "hertz",
+            "duration": 60,
+            "peclet": 1,
+        },
+    ),
+    "spheres": ("pore", {"particles": 3000, "sampling_interval": 0.75, "duration": 90}),
 }
+RANKS = {"1 rank": 1, "2 ranks": 2, **dict.fromkeys(OTHERS, 1)}
 LONGEST = 120.0  # seconds until a run that was killed has a process that ended
 
 
@@ -46,10 +62,9 @@ def settings(fields: Mapping[str, object]) -> list[str]:
 def run_command(directory: Path, interval: float, name: str) -> list[str]:
     ranks = RANKS[name]
     mpi = [str(COMMANDS / "mpirun"), "-np", str(ranks)] if ranks > 1 else []
-    scene = ["channel", *settings(FIELDS)]
-    if name in SUSPENSIONS:
-        scene = ["claylike", *settings({"equilibration": 0, "peclet": 1} | SUSPENSIONS[name])]
-    words = ["run", *scene, "--checkpoint-interval", str(interval), "--resume"]
+    scene, fields = OTHERS.get(name, ("channel", FIELDS))
+    words = ["run", scene, *settings({"equilibration": 0} | dict(fields))]
+    words += ["--checkpoint-interval", str(interval), "--resume"]
     return [*mpi, sys.executable, "-m", "narrows", *words, "--out", str(directory)]
 
 
@@ -167,10 +182,14 @@ def test_a_few_kills_leave_no_trace(tmp_path: Path) -> None:
     kills(3, random.Random(3), tmp_path, ["1 rank"])
 
 
+def test_a_few_kills_of_spheres_leave_no_trace(tmp_path: Path) -> None:
+    kills(2, random.Random(4), tmp_path, ["spheres"])
+
+
 @pytest.mark.fuzz
 def test_many_kills_leave_no_trace(tmp_path: Path) -> None:
     seed = int(os.environ.get("NARROWS_KILLS_SEED", str(random.SystemRandom().randrange(10**6))))
     print(f"NARROWS_KILLS_SEED={seed}")
-    names = ["1 rank", "1 rank", "1 rank", "2 ranks", "sweep", *SUSPENSIONS]
+    names = ["1 rank", "1 rank", "1 rank", "2 ranks", "sweep", *OTHERS]
     done = kills(KILLS, random.Random(seed), tmp_path, names)
     print("\n".join(f"{kind}: {count}" for kind, count in sorted(done.items())))

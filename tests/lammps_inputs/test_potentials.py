@@ -11,7 +11,9 @@ from numpy.testing import assert_allclose
 from scipy.integrate import quad
 from scipy.optimize import minimize_scalar
 
+from lammps_inputs.potentials.harmonic_wall import HarmonicWall
 from lammps_inputs.potentials.integrated_wall import IntegratedWall
+from lammps_inputs.potentials.pseudo_hard import PREFACTOR, PseudoHard
 from lammps_inputs.potentials.repulsive_mie import RepulsiveMie
 from lammps_inputs.potentials.soft_disk import SoftDisk
 from lammps_inputs.potentials.weeks_chandler_andersen import WeeksChandlerAndersen
@@ -77,6 +79,41 @@ def test_mie_force_and_energy_are_those_of_lammps(lammps: Any, potential: Repuls
         assert_allclose(forces[0], -forces[1], rtol=0, atol=0)
 
 
+def test_pseudo_hard_force_and_energy_are_those_of_lammps(lammps: Any) -> None:
+    potential = PseudoHard(sigma=1.5, epsilon=0.7)
+    for r in distances(potential.sigma, potential.cutoff):
+        forces, energy = through_lammps(
+            lammps,
+            [(10.0, 5.0), (10.0 + r, 5.0)],
+            f"pair_style mie/cut {potential.cutoff!r}\n{potential.pair_coeff('1 1')}\n"
+            "pair_modify shift yes",
+        )
+        r = (10.0 + r) - 10.0
+        repulsion = PREFACTOR * (potential.sigma / r) ** 50
+        assert_allclose(energy, potential.energy(r), atol=1e-11 * repulsion, rtol=0)
+        assert_allclose(-forces[0, 0], potential.force(r), atol=1e-11 * 50 * repulsion, rtol=0)
+
+
+def test_pseudo_hard_spheres_have_the_second_virial_coefficient_of_hard_ones() -> None:
+    """2 pi sigma^3 / 3, at kBT = 1.5 epsilon (Jover et al.), by the integral of 1 - exp(-U)."""
+    potential = PseudoHard()
+    inside = quad(
+        lambda r: (1 - math.exp(-float(potential.energy(r)))) * r**2, 0.5, potential.cutoff
+    )[0]
+    assert_allclose(inside + 0.5**3 / 3, 1 / 3, rtol=2e-3)
+
+
+def test_harmonic_wall_is_that_of_lammps(lammps: Any) -> None:
+    wall = HarmonicWall(radius=0.5, stiffness=200.0)
+    lines = f"pair_style none\n{wall.wall_fix('wall', 'all', FACES)}\nfix_modify wall energy yes"
+    for y in (0.1, 0.3, 0.4999, 0.5001, 1.0):
+        for place, sign in ((y, 1), (20 - y, -1)):
+            distance = place if sign > 0 else 20 - place
+            forces, energy = through_lammps(lammps, [(10.0, place)], lines)
+            assert_allclose(energy, wall.energy(distance), atol=1e-12)
+            assert_allclose(sign * forces[0, 1], wall.force(distance), atol=1e-12)
+
+
 def lepton_wall(wall: IntegratedWall) -> str:
     """The exact wall at both y faces, by LAMMPS's own expressions, which it compiles every step."""
     u = f"({wall.sigma!r}/r)"
@@ -108,10 +145,13 @@ def test_exact_and_tabulated_wall_are_those_of_lammps(lammps: Any, tmp_path: Pat
 
 @pytest.mark.parametrize(
     "potential",
-    [COLLOID_COLLOID, COLLOID_FLUID, WALL, SoftDisk(1.1, 0.8), WeeksChandlerAndersen(1.2, 1.3)],
+    [
+        *(COLLOID_COLLOID, COLLOID_FLUID, WALL, SoftDisk(1.1, 0.8)),
+        *(WeeksChandlerAndersen(1.2, 1.3), PseudoHard(1.1, 0.8)),
+    ],
 )
 def test_force_is_minus_the_slope_of_the_energy(
-    potential: RepulsiveMie | IntegratedWall | SoftDisk | WeeksChandlerAndersen,
+    potential: RepulsiveMie | IntegratedWall | SoftDisk | WeeksChandlerAndersen | PseudoHard,
 ) -> None:
     r = np.linspace(0.7 * potential.sigma, 0.9999 * potential.cutoff, 50)
     step = 1e-6
@@ -119,8 +159,10 @@ def test_force_is_minus_the_slope_of_the_energy(
     assert_allclose(potential.force(r), -slope, rtol=2e-8, atol=2e-8)
 
 
-@pytest.mark.parametrize("potential", [COLLOID_COLLOID, COLLOID_FLUID, WALL])
-def test_energy_and_force_vanish_at_the_cutoff(potential: RepulsiveMie | IntegratedWall) -> None:
+@pytest.mark.parametrize("potential", [COLLOID_COLLOID, COLLOID_FLUID, WALL, PseudoHard()])
+def test_energy_and_force_vanish_at_the_cutoff(
+    potential: RepulsiveMie | IntegratedWall | PseudoHard,
+) -> None:
     inside = potential.cutoff * (1 - 1e-9)
     assert 0 <= potential.energy(inside) < 1e-12
     assert 0 < potential.force(inside) < 1e-5

@@ -71,11 +71,11 @@ def test_the_reference_engine_begins_alike_and_resumes_bit_for_bit(
         with Simulation(scene, engine, tmp_path / engine) as simulation:
             simulation.finish()
         runs.append(RunDirectory(tmp_path / engine))
-    frames = [run.particles().positions[:4] for run in runs]
-    np.testing.assert_allclose(*frames, rtol=0, atol=1e-5)
-    tables = [run.table() for run in runs]
+    numpy_frames, lammps_frames = (run.particles().positions[:4] for run in runs)
+    np.testing.assert_allclose(numpy_frames, lammps_frames, rtol=0, atol=1e-5)
+    of_numpy, of_lammps = (run.table() for run in runs)
     for column in ("fluid_velocity_z", "mean_velocity_z", "rotational_temperature"):
-        np.testing.assert_allclose(*(table[column][:3] for table in tables), rtol=0, atol=1e-5)
+        np.testing.assert_allclose(of_numpy[column][:3], of_lammps[column][:3], rtol=0, atol=1e-5)
     kill_and_resume(scene, "reference", tmp_path / "killed")
     same_bytes(tmp_path / "reference", tmp_path / "killed", scene)
     assert {"colloid_temperature", "rotational_temperature"} <= analyze(runs[0].path).keys()

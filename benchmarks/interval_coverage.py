@@ -1,6 +1,6 @@
 """Do 95 % intervals hold the truth in 95 % of runs? Estimators of the error of a mean, compared.
 
-    python benchmarks/coverage.py --out runs/coverage --docs docs
+    python benchmarks/interval_coverage.py --out runs/coverage --docs docs
 
 Synthetic series whose mean is 0, and pieces of one long run of three scenes, which are run into
 the folder if they are missing there. Writes docs/coverage.md and docs/figures/coverage.png.
