@@ -8,6 +8,7 @@ from analysis.measures.settling_speed import sampled_frames
 from analysis.run_directory import RunDirectory
 from analysis.suspension_diffusion import suspension_diffusion
 
+QUANTITIES = ("self_diffusion",)
 LONGEST = 5.0  # lag: many times D, the time in which velocities are lost [t0]
 
 
