@@ -13,7 +13,13 @@ from run_files.progress import Progress
 from run_files.writing import replacing
 from srd_driver.dump import write_frame
 from srd_driver.errors import RunError
-from srd_driver.events import HardSpheres, PairReactions, Profile, WallReactions
+from srd_driver.events import (
+    EventError,
+    HardSpheres,
+    PairReactions,
+    Profile,
+    WallReactions,
+)
 from srd_driver.events.initial import thermal_velocities
 from srd_driver.events.state import SPEED_BIN
 
@@ -30,7 +36,10 @@ class EventsSession:
         self._outputs = {output.file: output for output in self._system.outputs}
         self.step = progress.step
         if progress.checkpoint:
-            self._engine = HardSpheres.load(directory / progress.checkpoint)
+            try:
+                self._engine = HardSpheres.load(directory / progress.checkpoint)
+            except EventError as error:
+                raise RunError(str(error)) from None
         else:
             self._engine = _engine(self._system, scene.seed)
             for output in self._outputs.values():

@@ -285,9 +285,18 @@ class HardSpheres:
 
     @classmethod
     def load(cls, file: str | PathLike[str]) -> Self:
-        """The engine that `save` wrote."""
+        """The engine that `save` wrote.
+
+        Raises:
+            EventError: for a file of another version.
+        """
         engine = cls.__new__(cls)
         with np.load(file) as saved:
+            wanted = {"dimensions"}
+            wanted |= {f"s_{name}" for name in Spheres._fields}
+            wanted |= {f"c_{name}" for name in Colors._fields}
+            if missing := sorted(wanted - set(saved.files)):
+                raise EventError(f"{file}: of another version of narrows: it has no {missing[0]}")
             engine.dimensions = int(saved["dimensions"])
             engine._spheres = _aligned(
                 Spheres(*(_loaded(saved[f"s_{n}"]) for n in Spheres._fields))

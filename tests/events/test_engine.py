@@ -286,3 +286,10 @@ def test_initial_states_fit(packing: float, walls: tuple[int, ...]) -> None:
     engine = HardSpheres.fluid(count, lengths, walls, seed=5)
     assert engine.packing_fraction() == pytest.approx(packing, abs=1e-3)
     assert engine.nearest() >= 1
+
+
+def test_a_checkpoint_of_another_version_is_told(tmp_path: Path) -> None:
+    file = tmp_path / "state.npz"
+    np.savez(file, dimensions=3, s_x=np.zeros(3))
+    with pytest.raises(EventError, match=r"state.npz: of another version of narrows: it has no "):
+        HardSpheres.load(file)
