@@ -8,7 +8,7 @@ is there already is not run again.
 
 import argparse
 import math
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
@@ -29,7 +29,7 @@ Array = NDArray[np.float64]
 
 ERRORS = ("2%", "1%")
 RUNS = 30
-SERIES = 600  # of a kind
+SERIES = 200  # of a kind
 LONGEST = 2**18  # samples
 FIRST = 200  # samples at the first look
 WIDTH = 0.5  # standard deviation over mean
@@ -208,19 +208,22 @@ def main() -> None:
     parser.add_argument("--page", type=Path, help="Markdown page whose table is renewed")
     parser.add_argument("--jobs", type=int, default=available_cores())
     options = parser.parse_args()
-    rows = []
-    for name in STUDIES:
-        for asked, reached in stop_runs(name, options.out, options.jobs):
-            rows.append(reached.row(f"{name}, {RUNS} runs", asked))
-            print(rows[-1], flush=True)
+    rows: list[tuple[str, ...]] = []
+    for row in measured(options.out, options.jobs):
+        rows.append(row)
+        print(row, flush=True)
+        if options.page:  # as far as it is
+            replace_block(options.page, "table", table(COLUMNS, rows))
+
+
+def measured(folder: Path, jobs: int) -> Iterator[tuple[str, ...]]:
+    """The rows of the table: series first, which take minutes."""
     for name in SYNTHETIC:
         for asked in ERRORS:
-            rows.append(stop_series(name, asked).row(f"{name}, {SERIES} series", asked))
-            print(rows[-1], flush=True)
-    text = table(COLUMNS, rows)
-    print(text)
-    if options.page:
-        replace_block(options.page, "table", text)
+            yield stop_series(name, asked).row(f"{name}, {SERIES} series", asked)
+    for name in STUDIES:
+        for asked, reached in stop_runs(name, folder, jobs):
+            yield reached.row(f"{name}, {RUNS} runs", asked)
 
 
 if __name__ == "__main__":
