@@ -9,6 +9,7 @@ CAPTIONS = {
     "flow.png": "Mean flow of the fluid: stream lines over its speed, by colour.",
     "lane_order.png": "Order parameter of lanes against time.",
     "pair_correlation.png": "Pair correlation of the colloids along the channel.",
+    "path_diffusivity.png": "Diffusivity profile of the trajectory by each estimator, with errors.",
     "profile.png": "Velocity of the fluid across the slit, mean over time with error bars.",
     "radial_distribution.png": "Radial distribution function of the colloids.",
     "reacted_speeds.png": "Normal speeds of the particles that reacted, beside equilibrium.",

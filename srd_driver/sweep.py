@@ -21,6 +21,7 @@ from srd_driver.resume import newest_step, refuse_another_scene, tells_scene
 from srd_driver.run_lock import is_locked
 
 POLL_SECONDS = 0.2
+ORPHANED = "the run that it begins from has failed"
 LAUNCHER = ("PMI_", "PMIX_")  # by which mpirun or srun would claim our processes for its job
 
 
@@ -104,9 +105,9 @@ def run_all(
     running: dict[Run, subprocess.Popen[bytes]] = {}
     try:
         while waiting or running:
-            for orphan in _orphans(waiting, failures):
-                waiting.remove(orphan)
-                failures.append(Failure(orphan, "the run that it begins from has failed"))
+            while orphans := _orphans(waiting, failures):  # and those that begin from them
+                waiting = [run for run in waiting if run not in orphans]
+                failures += [Failure(run, ORPHANED) for run in orphans]
             while len(running) < jobs and (run := _next(waiting, running)):
                 waiting.remove(run)
                 if not is_finished(run):  # another process may have done it

@@ -5,6 +5,7 @@ import signal
 import subprocess
 import sys
 import time
+from collections.abc import Iterator
 from pathlib import Path
 
 import numpy as np
@@ -30,10 +31,12 @@ REFUSED = {
 
 
 @pytest.fixture(autouse=True)
-def _folder_of_scenes(monkeypatch: pytest.MonkeyPatch) -> None:
+def _folder_of_scenes(monkeypatch: pytest.MonkeyPatch) -> Iterator[None]:
     """As if NARROWS_SCENES had been set when this process began; for its children it is."""
     monkeypatch.setenv(package.FOLDER_VARIABLE, FOLDER)
     monkeypatch.setattr(package, "__path__", [*package.__path__, FOLDER])
+    all_scenes.cache_clear()
+    yield
     all_scenes.cache_clear()
 
 

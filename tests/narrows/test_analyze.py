@@ -31,7 +31,9 @@ def test_table_and_files(run: Path) -> None:
     assert "settling speed rest" in done.stdout
     assert "0.03" in done.stdout
     assert "96 frames; at least 320 are needed" in done.stdout
-    assert "summary.json, profile.png, settling_speed.png, space_time.png" in done.stdout
+    assert (
+        "summary.json, profile.png, settling_speed.png, snapshot.png, space_time.png" in done.stdout
+    )
     assert json.loads((run / "summary.json").read_text())["scene"] == "channel"
 
 
