@@ -15,11 +15,11 @@ from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
-from scipy.signal import lfilter
 
 from analysis import correlated_mean
 from analysis.estimate import Estimate
 from analysis.precision import Precision
+from interval_coverage import autoregressive
 from narrows.markdown import replace_block, table
 from narrows.until import sweep_until
 from srd_driver import sweep_definition
@@ -33,14 +33,6 @@ SERIES = 200  # of a kind
 LONGEST = 2**18  # samples
 FIRST = 200  # samples at the first look
 WIDTH = 0.5  # standard deviation over mean
-
-
-def autoregressive(time: float, samples: int, random: np.random.Generator) -> Array:
-    """AR(1) of variance 1."""
-    factor = math.exp(-1 / time)
-    noise = random.normal(size=samples) * math.sqrt(1 - factor**2)
-    noise[0] /= math.sqrt(1 - factor**2)
-    return np.asarray(lfilter([1], [1, -factor], noise))
 
 
 def two_times(random: np.random.Generator) -> Array:
