@@ -14,6 +14,7 @@ from run_files.reading import read_json_list
 
 COLUMNS = ("figure", "quantity", "before", "", "now", "", "why")
 LARGER = 1.25  # times the error before
+FEW = 30  # degrees of freedom; from there on Student's t is a normal distribution to 5 %
 
 Entry = dict[str, Any]
 
@@ -47,7 +48,8 @@ def reason(old: Entry, entry: Entry) -> str:
     joint = math.hypot(old["error"], entry["error"])
     if joint and abs(entry["value"] - old["value"]) > joint:
         told.append(f"{abs(entry['value'] - old['value']) / joint:.1f} joint errors from before")
-    if freedom := entry.get("freedom"):
+    freedom = entry.get("freedom")
+    if freedom and freedom < FEW:
         told.append(f"the error has {freedom:.2g} degrees of freedom")
     return "; ".join(told) or "close to the limit in both"
 

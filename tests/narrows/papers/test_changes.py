@@ -32,4 +32,6 @@ def test_another_sample_is_told() -> None:
     old = {"value": 1.0, "error": 0.1}
     assert changes.reason(old, {"value": 1.3, "error": 0.1}) == "2.1 joint errors from before"
     assert changes.reason(old, {"value": 1.05, "error": 0.1}) == "close to the limit in both"
+    many = {"value": 1.05, "error": 0.1, "freedom": 150.0}
+    assert changes.reason(old, many) == "close to the limit in both"
     assert changes.reason(old, {"value": None, "error": None}) == "known in one of them only"
