@@ -71,7 +71,8 @@ def test_advice_is_a_run_that_holds_it(tmp_path: Path) -> None:
 
 def test_many_cores_take_many_seeds() -> None:
     scene = make_scene("bulk", **FLUID)
-    advice = advise(scene, "temperature=0.05%", calibration_seconds=1, cores=64)
+    # a second tells it to some 0.03 %, on any machine far from what is asked
+    advice = advise(scene, "temperature=0.002%", calibration_seconds=1, cores=64)
     assert 1 < advice.repeats <= 64
     assert advice.scene.duration >= advice.calibration.sampled
 

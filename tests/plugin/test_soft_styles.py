@@ -268,7 +268,7 @@ PAGES = ("pair_soft_disk", "fix_isokinetic", "fix_configurational", "compute_tem
 @pytest.mark.parametrize("page", PAGES)
 def test_the_example_deck_of_a_page_runs(page: str, lammps: Commands) -> None:
     text = (ROOT / "docs" / f"{page}.md").read_text(encoding="utf-8")
-    decks = re.findall(r"```lammps\n(.*?)```", text, re.DOTALL)
+    decks = re.findall(r"```\n(units .*?)```", text, re.DOTALL)
     assert decks
     for lines in decks:
         lammps(f"clear\n{lines}")
