@@ -22,7 +22,10 @@ def test_a_run_and_its_analysis_need_no_extra(tmp_path: Path, command: Run) -> N
 @pytest.mark.parametrize(
     ("words", "message"),
     [
-        (("run", "pore", "--out", "pore"), "engine events needs numba: pip install 'narrows[events]'"),
+        (
+            ("run", "pore", "--out", "pore"),
+            "engine events needs numba: pip install 'narrows[events]'",
+        ),
         (
             ("sweep", "pore", "--over", "width=5,6", "--out", "pores"),
             "engine events needs numba: pip install 'narrows[events]'",
