@@ -28,9 +28,7 @@ from lattice.models import LatticeGas, RateError, Vector
 try:
     from numba import njit
 except ImportError:
-    raise ImportError(
-        "kinetic Monte Carlo needs numba: pip install 'narrows[lattice]'"
-    ) from None
+    raise ImportError("kinetic Monte Carlo needs numba: pip install 'narrows[lattice]'") from None
 
 _SLOTS = 16  # columns of an alias table, a power of two not below the 9 pair states
 _U = np.uint64
