@@ -14,6 +14,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from analysis.arrays import Array
+from analysis.flow_grid import FlowField, flow_columns
 from analysis.particle_trajectory import ParticleTrajectory
 from run_files import RunDirectoryError
 from run_files.manifest import Box, Clock, Output, Solvent, Species, read_manifest
@@ -77,45 +78,6 @@ class Profile:
     y: Array
     counts: Array
     velocity_x: Array
-
-
-@dataclass(frozen=True)
-class FlowField:
-    """The fluid on a grid, each an average over the time up to its step.
-
-    Attributes:
-        steps: last engine step of each average, (K,).
-        axes: middles of the bins along each axis; about a particle, distances from it along
-            periodic axes [a0].
-        counts: particles in each bin, (K, nx, ny) or (K, nx, ny, nz).
-        velocity: their mean velocity in the laboratory, (K, nx, ny, ..., d) [a0/t0].
-        temperature: mean square velocity per dimension, the flow left in, (K, nx, ny, ...) [kBT].
-    """
-
-    steps: Steps
-    axes: tuple[Array, ...]
-    counts: Array
-    velocity: Array
-    temperature: Array
-
-    def mean(self, used: NDArray[np.bool_] | None = None) -> "FlowField":
-        """The average of those averages, every particle with the same weight; K is then 1.
-
-        Args:
-            used: which of them, (K,); default: all.
-        """
-        chosen = np.full(len(self.steps), True) if used is None else used
-        counts = self.counts[chosen]
-        total = np.maximum(counts.sum(axis=0), 1e-300)
-        velocity = (counts[..., None] * self.velocity[chosen]).sum(axis=0) / total[..., None]
-        temperature = (counts * self.temperature[chosen]).sum(axis=0) / total
-        return FlowField(
-            self.steps[chosen][-1:],
-            self.axes,
-            counts.mean(axis=0)[None],
-            velocity[None],
-            temperature[None],
-        )
 
 
 @dataclass(frozen=True)
@@ -383,9 +345,7 @@ class RunDirectory:
         if grid is None:
             raise RunDirectoryError(f"{self.path}: no flow field was asked for (flow_interval)")
         file = self._output(name, "flow").file
-        axes = len(grid.bins)
-        wanted = [f"Coord{axis + 1}" for axis in range(axes)]
-        wanted += ["Ncount", *(f"v{axis}" for axis in "xyz"[:axes]), "temp"]
+        wanted = flow_columns(len(grid.bins))
         columns, count, numbers = self._read_table(file, "Chunk Coord1", wanted)
         bins = math.prod(grid.bins)
         rows = self._reshape(file, numbers, 3 + bins * count)
@@ -396,17 +356,8 @@ class RunDirectory:
         if np.any(rows[:, 0] != expected):
             wrong = int(np.flatnonzero(rows[:, 0] != expected)[0])
             refuse(self.path / file, f"step {expected[wrong]} expected, {rows[wrong, 0]:g} found")
-        table = rows[:, 3:].reshape(len(rows), *grid.bins, count)[..., columns]
-        places = [
-            np.moveaxis(table[0, ..., a], a, 0).reshape(grid.bins[a], -1) for a in range(axes)
-        ]
-        return FlowField(
-            expected,
-            tuple(place[:, 0] for place in places),
-            table[..., axes],
-            table[..., axes + 1 : 2 * axes + 1],
-            table[..., -1],
-        )
+        table = rows[:, 3:].reshape(len(rows), bins, count)[..., columns]
+        return FlowField.of_table(expected, table, grid.bins)
 
     def flow_used(self, field: FlowField) -> NDArray[np.bool_]:
         """Which averages of a flow field lie after the equilibration, (K,).

@@ -16,7 +16,7 @@ from pathlib import Path
 DOCS = Path(__file__).parent
 PICTURES = DOCS / "figures" / "gallery"
 PAGE = DOCS / "gallery.md"
-WIDEST = 900  # pixels
+WIDTHS = (900, 720, 560, 420)  # pixels; the first that is small enough
 COLOURS = 128
 MOST_BYTES = 150_000
 
@@ -246,19 +246,18 @@ def make(folder: Path) -> Iterator[tuple[Entry, Path]]:
 
 
 def keep(picture: Path, target: Path) -> int:
-    """Write a picture into the repository, narrow and of few colours; its bytes."""
+    """Write a picture into the repository, of few colours, as wide as it may be; its bytes."""
     from PIL import Image
 
     image = Image.open(picture).convert("RGB")
-    if image.width > WIDEST:
-        size = (WIDEST, round(image.height * WIDEST / image.width))
-        image = image.resize(size, Image.Resampling.LANCZOS)
     target.parent.mkdir(parents=True, exist_ok=True)
-    image.quantize(COLOURS, dither=Image.Dither.NONE).save(target, optimize=True)
-    size_in_bytes = target.stat().st_size
-    if size_in_bytes > MOST_BYTES:
-        sys.exit(f"{target}: {size_in_bytes} bytes; at most {MOST_BYTES}")
-    return size_in_bytes
+    for width in WIDTHS:
+        size = (width, round(image.height * width / image.width))
+        shown = image.resize(size, Image.Resampling.LANCZOS) if width < image.width else image
+        shown.quantize(COLOURS, dither=Image.Dither.NONE).save(target, optimize=True)
+        if (size_in_bytes := target.stat().st_size) <= MOST_BYTES:
+            return size_in_bytes
+    sys.exit(f"{target}: {size_in_bytes} bytes; at most {MOST_BYTES}")
 
 
 def main() -> None:

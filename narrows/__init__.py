@@ -14,7 +14,7 @@
 | `RunDirectory` | its arrays, and the MDAnalysis Universe |
 | `sweep`, `table` | many runs on all cores, and their numbers by point |
 | `draw_flow` | stream lines of a flow field, on axes of yours |
-| `read_fluid` | a fluid that fix mpc saved |
+| `read_fluid`, `read_flow` | a fluid, and a flow field, that fix mpc left of a deck of yours |
 
 Each is loaded when it is first asked for.
 """
@@ -26,6 +26,7 @@ from typing import TYPE_CHECKING, Any
 
 if TYPE_CHECKING:
     from analysis import RunDirectory, analyze
+    from analysis.flow_grid import read_flow
     from analysis.measures.flow_field import draw_flow
     from narrows.scripting import make_scene, sweep, table
     from narrows.until import run_until
@@ -38,6 +39,7 @@ __all__ = [
     "analyze",
     "draw_flow",
     "make_scene",
+    "read_flow",
     "read_fluid",
     "run_until",
     "sweep",
@@ -50,6 +52,7 @@ _MODULES = {
     "analyze": "analysis",
     "draw_flow": "analysis.measures.flow_field",
     "make_scene": "narrows.scripting",
+    "read_flow": "analysis.flow_grid",
     "read_fluid": "run_files.fluid_file",
     "run_until": "narrows.until",
     "sweep": "narrows.scripting",

@@ -8,7 +8,8 @@ from matplotlib.patches import Circle
 
 from analysis.arrays import Array
 from analysis.findings import Findings
-from analysis.run_directory import FlowField, RunDirectory
+from analysis.flow_grid import FlowField
+from analysis.run_directory import RunDirectory
 from run_files import RunDirectoryError
 
 EMPTY = 0.2  # of the usual number of particles: bins in a colloid
