@@ -86,14 +86,14 @@ def predicted(results: Path) -> Array:
 
 
 COLUMNS = (
-    *("t [t0]", "most", "predicted there", "least", "predicted there"),
+    *("t [t0]", "most", "predicted", "least", "predicted"),
     *("r.m.s. difference", "r.m.s. error"),
 )
 
 
-def extreme(means: list[Estimate], law: Array, place: int) -> tuple[str, str]:
-    """Measured and predicted density of a bin."""
-    return number(means[place].value, means[place].error), f"{law[place]:.3f}"
+def told(mean: Estimate) -> str:
+    """`1.446 +- 0.020`."""
+    return number(mean.value, mean.error)
 
 
 def main() -> None:
@@ -125,8 +125,8 @@ def main() -> None:
         rows.append(
             (
                 f"{time}",
-                *extreme(means, law[place], int(mean.argmax())),
-                *extreme(means, law[place], int(mean.argmin())),
+                *(told(means[mean.argmax()]), f"{law[place].max():.3f}"),
+                *(told(means[mean.argmin()]), f"{law[place].min():.3f}"),
                 *(f"{math.sqrt((a**2).mean()):.3f}" for a in (mean - law[place], error)),
             )
         )

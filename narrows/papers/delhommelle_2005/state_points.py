@@ -14,6 +14,7 @@ from narrows.papers.figure import Directories, Quality
 
 CRYSTAL = 1.03
 FLUID = 0.75
+PHI = "lane_order_near"  # the reading of phi that has the paper's numbers (docs/errata.md)
 LARGEST = 10.0  # field of a configurational run
 UP, DOWN = 1, 2  # seeds
 ALIKE = ("dimension", "density", "thermostat", "seed")  # what the runs of a ladder share
@@ -89,7 +90,7 @@ def ladders_of(scenes: Iterable[Scene], key: str) -> list[list[Scene]]:
 
 
 def number(directories: Directories, scene: Scene, key: str) -> Estimate:
-    """A number of the run's summary, `lane_order` for one."""
+    """A number of the run's summary, `current` for one."""
     return Estimate.of_json(summary_of(directories[scene].path)[key])
 
 
