@@ -40,8 +40,12 @@ class Table:
     columns: Mapping[str, Array]
 
     def __getitem__(self, name: str) -> Array:
-        """The column of that name, (K,)."""
-        return self.columns[name]
+        """The column of that name, (K,).
+
+        Raises:
+            KeyError: naming those that there are.
+        """
+        return _column(self.columns, name)
 
 
 @dataclass(frozen=True)
@@ -59,8 +63,18 @@ class Bins:
     columns: Mapping[str, Array]
 
     def __getitem__(self, name: str) -> Array:
-        """The column of that name, (K, bins)."""
-        return self.columns[name]
+        """The column of that name, (K, bins).
+
+        Raises:
+            KeyError: naming those that there are.
+        """
+        return _column(self.columns, name)
+
+
+def _column(columns: Mapping[str, Array], name: str) -> Array:
+    if name not in columns:
+        raise KeyError(f"{name}: there is {', '.join(columns)}")
+    return columns[name]
 
 
 @dataclass(frozen=True)
@@ -277,7 +291,11 @@ class RunDirectory:
         for output in self.manifest.system.outputs:
             if output.file.partition(".")[0] == name and output.kind == kind:
                 return output
-        raise RunDirectoryError(f"{self.path / 'manifest.json'}: no {kind} {name} among outputs")
+        kept = ", ".join(output.file for output in self.manifest.system.outputs)
+        hint = ""
+        if kind == "trajectory":
+            hint = ": it has no particles, or did not keep them (a fluid is seen by flow_interval)"
+        raise RunDirectoryError(f"{self.path}: no {kind} among its outputs {kept}{hint}")
 
     def table(self, name: str = "observables") -> Table:
         """An output of kind `table`, by the name of its file.

@@ -206,7 +206,7 @@ def page() -> str:
         "# Gallery",
         "What a run looks like, and the commands that made each picture: in a clone, one after the "
         "other. A later picture may be of a run above it. `python docs/gallery.py` makes them all "
-        "again, and this page; that takes about MINUTES minutes of one core.",
+        "again, and this page, in about five minutes of one core.",
     ]
     for entry in ENTRIES:
         parts += [
