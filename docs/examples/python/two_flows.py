@@ -15,7 +15,7 @@ for axes, folder, title in zip(panels, folders, ("with", "without"), strict=True
     run = RunDirectory(folder)
     field = run.field()
     flow = field.mean(run.flow_used(field))
-    mesh = draw_flow(axes, flow, radius=run.species().radius, fastest=0.2)
+    mesh = draw_flow(axes, flow, radius=run.species().radius, fastest=0.12)
     axes.set_title(f"{title} hydrodynamics")
 figure.colorbar(mesh, ax=panels, label="speed of the fluid [$a_0/t_0$]", shrink=0.8)
 figure.savefig(picture, dpi=100)
