@@ -8,7 +8,8 @@ Every point is a run directory; the command may be stopped and given again. A po
 - refused: the scene says so, before anything runs;
 - broken: stopped by an error, without a number, or off by more than `Criterion.broken`;
 - inaccurate: off by more than `Criterion.inaccurate`;
-- stable: neither.
+- stable: neither, and not off by more than `Criterion.broken` for certain;
+- open: neither, and not even that is certain.
 
 Off means that the whole 95 % interval is beyond the limit. What is broken or inaccurate has to be
 told by somebody, the scene's warning, the engine's error or a note of the analysis; the exit code
@@ -36,8 +37,8 @@ from narrows.markdown import number, replace_block, table
 from run_files.progress import is_begun, read_failure
 from srd_driver.sweep import Run, available_cores, is_finished, run_all
 
-State = Literal["refused", "broken", "inaccurate", "stable"]
-COLOURS = {"refused": "0.6", "broken": "C3", "inaccurate": "C1", "stable": "C2"}
+State = Literal["refused", "broken", "inaccurate", "open", "stable"]
+COLOURS = {"refused": "0.6", "broken": "C3", "inaccurate": "C1", "open": "C0", "stable": "C2"}
 
 Fields = dict[str, Any]
 CHANNEL: Fields = {"duration": 300, "equilibration": 20}
@@ -301,11 +302,13 @@ def judge(point: Point, failure: str | None) -> None:
         point.told.append(f"analysis: {criterion.ratio}: {reason}")
         return
     point.ratio = estimate / unit
-    off = abs(point.ratio.number - 1) - point.ratio.half_width()
-    if off > criterion.broken or not math.isfinite(off):
+    off, reach = abs(point.ratio.number - 1), point.ratio.half_width()
+    if off - reach > criterion.broken or not math.isfinite(off + reach):
         point.state = "broken"
-    elif off > criterion.inaccurate:
+    elif off - reach > criterion.inaccurate:
         point.state = "inaccurate"
+    elif off + reach > criterion.broken:
+        point.state = "open"
 
 
 def _cause(failure: str) -> str:
@@ -316,7 +319,7 @@ def _cause(failure: str) -> str:
 
 def map_table(judged: list[Point]) -> str:
     """One row an axis: its values by state."""
-    states: tuple[State, ...] = ("stable", "inaccurate", "broken", "refused")
+    states: tuple[State, ...] = ("stable", "open", "inaccurate", "broken", "refused")
     rows = []
     for axis in dict.fromkeys(point.axis for point in judged):
         cells = [
