@@ -125,8 +125,8 @@ ENTRIES: tuple[Entry, ...] = (
         CLAY,
         "165 charged spheres in a fluid of 200 000 particles, clusters by colour, the others grey.",
         (
-            "narrows run claylike --set volume_fraction=0.05 --set duration=60 --set equilibration=30 "
-            "--out runs/suspension",
+            "narrows run claylike --set volume_fraction=0.05 --set duration=60 "
+            "--set equilibration=30 --out runs/suspension",
             "narrows analyze runs/suspension",
         ),
         "runs/suspension/suspension.png",
