@@ -111,6 +111,16 @@ def test_the_prior_helps_where_a_lag_is_long(path: Array, monkeypatch: pytest.Mo
     assert deviation() > 2 * smooth
 
 
+def test_a_single_long_lag_of_fine_frames(path: Array) -> None:
+    """Where the likelihood is flat nothing leads to the top: the start is what walkers move by."""
+    group = walks.universe(path[:, :WALKERS]).atoms
+    coordinate = AlongAxis(group)
+    options = {"bins": 5, "lags": (40,), "samples": 0}
+    results = BayesianDiffusivity(coordinate, 0, walks.LENGTH, **options).run().results
+    ratio = results.diffusivity / walks.diffusivity(results.positions)
+    assert ratio == pytest.approx(np.ones(4), abs=0.5)  # before, all were 16 times the truth
+
+
 def three_bins() -> TransitionLikelihood:
     counts = np.array([[90.0, 30, 5], [28, 80, 33], [6, 31, 70]])
     return TransitionLikelihood(counts, counts.sum(axis=0) / counts.sum(), 0.5, 0.2)
