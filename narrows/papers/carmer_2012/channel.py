@@ -30,8 +30,8 @@ BINS = 6
 FRAME = 1.0
 SOLVENTS = {"on": "MPC fluid", "bath": "random solvent"}
 EQUILIBRATION = {"on": 200.0, "bath": 1000.0}
-DURATION = {"quick": {"on": 4000.0, "bath": 6000.0}, "full": {"on": 8000.0, "bath": 16000.0}}
-SEEDS = {"quick": 3, "full": 8}
+DURATION = {"quick": {"on": 4000.0, "bath": 12000.0}, "full": {"on": 8000.0, "bath": 16000.0}}
+SEEDS = {"quick": 4, "full": 8}
 LAGS = {"on": (16, 32), "bath": (64, 128)}  # in frames: of the result, and twice it
 SHIFTS = 4
 INNER = 2  # faces near the mid-line
@@ -108,7 +108,7 @@ def comparison(directories: Directories, quality: Quality) -> Outcome:
     """D from the mid-line to the wall in both solvents."""
     figure, axes = one_panel("from the mid-line $|y|$ [$a_0$]", "diffusivity $D(y)$ [$a_0^2/t_0$]")
     faces = FARTHEST / BINS * np.arange(1, BINS)
-    what = f"1 less D at |y| = {faces[-1]:.2f} over D near the mid-line"
+    what = f"1 less D {faces[-1]:.2f} from the mid-line over D near it"
     rows: list[tuple[str | float, ...]] = []
     results: list[Result] = []
     slower: dict[str, Estimate] = {}
