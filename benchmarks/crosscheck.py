@@ -1,9 +1,10 @@
 """fix mpc, the numpy reference and fix srd on the same scenes: one table, one figure.
 
-    python benchmarks/crosscheck.py --out runs/crosscheck
+    python benchmarks/crosscheck.py --out runs/crosscheck [--page docs/crosscheck.md]
 
 Runs what is missing in the folder (it can be stopped and started again) on all cores, then analyses
-all. Values are means over the seeds with the standard error that their scatter gives.
+all. Values are means over the seeds; their errors are those of the runs and of the scatter between
+them, together. Writes the table and the figure into the folder, and the table into the page.
 """
 
 import argparse
@@ -16,11 +17,13 @@ import numpy as np
 from matplotlib.figure import Figure
 from numpy.typing import NDArray
 
-from analysis import analyze
+from analysis import Estimate, analyze
+from analysis.estimate import mean_of_repeats
 from analysis.flow import momentum_profile
 from analysis.run_directory import RunDirectory
 from analysis.shear_wave import wave_amplitude
 from lammps_inputs import make_scene
+from narrows.markdown import number, replace_block, table
 from srd_driver.sweep import Run, available_cores, run_all
 
 ENGINES: tuple[str, ...] = ("mpc", "reference", "srd")
@@ -76,25 +79,39 @@ def found(summary: dict[str, Any], quantity: str) -> dict[str, Any]:
     return summary
 
 
-def over_seeds(summaries: list[dict[str, Any]], quantity: str) -> tuple[float, float]:
-    """Mean and standard error of a quantity over independent runs."""
-    values = np.array([found(summary, quantity)["value"] for summary in summaries])
-    return float(values.mean()), float(values.std(ddof=1) / np.sqrt(len(values)))
+def over_seeds(summaries: list[dict[str, Any]], quantity: str) -> Estimate:
+    """Mean of a quantity over independent runs."""
+    return mean_of_repeats([Estimate.of_json(found(summary, quantity)) for summary in summaries])
+
+
+COLUMNS = (
+    "scene",
+    "quantity",
+    "fix mpc",
+    "reference",
+    "fix srd",
+    "theory",
+    "mpc against reference",
+)
 
 
 def as_table(summaries: dict[tuple[str, str], list[dict[str, Any]]]) -> str:
-    """The comparison as Markdown."""
-    rows = ["| scene | quantity | fix mpc | reference | fix srd | theory |", "|---|" + "---|" * 5]
+    """The comparison as Markdown; the last column is their distance in normal deviations."""
+    rows = []
     for scene, quantities in QUANTITIES.items():
         for quantity in quantities:
-            cells = []
-            for engine in ENGINES:
-                value, error = over_seeds(summaries[scene, engine], quantity)
-                cells.append(f"{value:.4f} +- {error:.4f}")
+            means = {name: over_seeds(summaries[scene, name], quantity) for name in ENGINES}
             theory = found(summaries[scene, ENGINES[0]][0], quantity).get("theory")
-            told = f"{theory:.4f}" if theory else ""
-            rows.append(f"| {scene} | {quantity} | {' | '.join(cells)} | {told} |")
-    return "\n".join(rows)
+            rows.append(
+                (
+                    scene,
+                    quantity,
+                    *(number(mean.value, mean.error) for mean in means.values()),
+                    f"{theory:.4f}" if theory else "",
+                    f"{means['mpc'].deviation(means['reference']):+.1f}",
+                )
+            )
+    return table(COLUMNS, rows)
 
 
 def figure(folder: Path, file: Path) -> None:
@@ -117,10 +134,11 @@ def figure(folder: Path, file: Path) -> None:
             flow = momentum_profile(fluid.counts[used], fluid.velocity_x[used])
             velocity.append(flow.mean(axis=0))
             channel = RunDirectory(run_of(folder, few(1), engine, seed).folder)
-            table = channel.table()
+            averages = channel.table()
             x = channel.particles().positions[:, 0, 0]
-            moved.append(x[1:] - x[0] - np.cumsum(table["mean_velocity_x"]) * channel.interval)
-            ends = channel.times(table.steps)
+            drift = np.cumsum(averages["mean_velocity_x"]) * channel.interval
+            moved.append(x[1:] - x[0] - drift)
+            ends = channel.times(averages.steps)
         decay.semilogy(times, np.mean(wave, axis=0), **style)
         profile.plot(fluid.y, np.mean(velocity, axis=0), **style)
         settling.plot(ends, np.mean(moved, axis=0), **style)
@@ -138,7 +156,9 @@ def figure(folder: Path, file: Path) -> None:
 def main() -> None:
     parser = argparse.ArgumentParser(description=__doc__.partition("\n")[0] if __doc__ else None)
     parser.add_argument("--out", type=Path, required=True, help="folder of the runs")
-    folder: Path = parser.parse_args().out
+    parser.add_argument("--page", type=Path, help="Markdown page whose table is renewed")
+    options = parser.parse_args()
+    folder: Path = options.out
     runs = {
         (name, engine, seed): run_of(folder, name, engine, seed)
         for name, engine, seed in product(SCENES, ENGINES, SEEDS)
@@ -152,6 +172,8 @@ def main() -> None:
     text = as_table(summaries)
     (folder / "crosscheck.md").write_text(text + "\n", encoding="utf-8")
     figure(folder, folder / "crosscheck.png")
+    if options.page:
+        replace_block(options.page, "table", text)
     print(text)
 
 

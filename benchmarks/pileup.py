@@ -1,7 +1,8 @@
 """Density of the fluid along the channel while a chain falls through it, measured and predicted.
 
     narrows reproduce tabatabaei-2009 beyond-flux --out runs/thesis
-    python benchmarks/pileup.py --law runs/thesis/results.json --out runs/pileup
+    python benchmarks/pileup.py --law runs/thesis/results.json --out runs/pileup \
+        [--page docs/beyond.md]
 
 The thesis' chain of Fig. 4.12, 31 colloids in 300 x 10, run by plain `lmp` with the deck that
 `narrows deck` writes and a `fix_modify save` of the whole fluid now and then. The prediction is
@@ -19,8 +20,12 @@ import numpy as np
 from matplotlib.figure import Figure
 from numpy.typing import NDArray
 
+from analysis import Estimate
+from analysis.estimate import mean_of_independent
 from analysis.two_fluid import TwoFluid
 from lammps_inputs.scenes.channel import Channel
+from narrows.markdown import number, replace_block, table
+from run_files.fluid_file import read_fluid
 
 Array = NDArray[np.float64]
 
@@ -51,10 +56,8 @@ def run(folder: Path, seed: int) -> None:
 
 
 def fluid_density(file: Path) -> Array:
-    """Number density in bins along x over n_f, from a saved fluid (docs/fix_mpc.md)."""
-    content = file.read_bytes()
-    count = np.frombuffer(content[8:32], "<i8")[1]
-    x = np.frombuffer(content[32:], "<f8").reshape(count, -1)[:, 1] % SCENE.length
+    """Number density in bins along x over n_f, from a saved fluid."""
+    x = read_fluid(file).positions[:, 0] % SCENE.length
     number, _ = np.histogram(x, round(SCENE.length / BIN), (0, SCENE.length))
     return np.asarray(number / (BIN * SCENE.width * SCENE.density))
 
@@ -82,10 +85,22 @@ def predicted(results: Path) -> Array:
     return np.asarray(free.reshape(len(TIMES), -1, round(BIN / CELL)).mean(axis=2))
 
 
+COLUMNS = (
+    *("t [t0]", "most", "predicted", "least", "predicted"),
+    *("r.m.s. difference", "r.m.s. error"),
+)
+
+
+def told(mean: Estimate) -> str:
+    """`1.446 +- 0.020`."""
+    return number(mean.value, mean.error)
+
+
 def main() -> None:
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
     parser.add_argument("--law", type=Path, required=True, help="results.json with beyond-flux")
     parser.add_argument("--out", type=Path, required=True)
+    parser.add_argument("--page", type=Path, help="Markdown page whose table is renewed")
     arguments = parser.parse_args()
     law = predicted(arguments.law)
     for seed in SEEDS:
@@ -95,22 +110,30 @@ def main() -> None:
     figure = Figure(figsize=(8, 3.8), layout="constrained")
     axes = figure.subplots()
     x = BIN * (np.arange(law.shape[1]) + 0.5)
-    for number, time in enumerate(TIMES):
+    rows = []
+    for place, time in enumerate(TIMES):
         runs = np.array(
             [fluid_density(arguments.out / f"seed-{seed}" / f"fluid.{time}") for seed in SEEDS]
         )
-        mean, error = runs.mean(axis=0), runs.std(axis=0, ddof=1) / len(SEEDS) ** 0.5
+        means = [mean_of_independent(column) for column in runs.T]
+        mean = np.array([each.number for each in means])
+        error = np.array([each.standard_error for each in means])
         axes.errorbar(
-            x, mean, error, fmt="o", ms=4, capsize=2, color=f"C{number}", label=f"t = {time}"
+            x, mean, error, fmt="o", ms=4, capsize=2, color=f"C{place}", label=f"t = {time}"
         )
-        axes.plot(x, law[number], color=f"C{number}")
-        deviation, noise = (float(np.sqrt((a**2).mean())) for a in (mean - law[number], error))
-        print(
-            f"t = {time}: most {mean.max():.3f} +- {error[mean.argmax()]:.3f}, predicted "
-            f"{law[number].max():.3f}; least {mean.min():.3f} +- {error[mean.argmin()]:.3f}, "
-            f"predicted {law[number].min():.3f}; rms deviation {deviation:.3f}, rms error of the "
-            f"mean {noise:.3f}"
+        axes.plot(x, law[place], color=f"C{place}")
+        rows.append(
+            (
+                f"{time}",
+                *(told(means[mean.argmax()]), f"{law[place].max():.3f}"),
+                *(told(means[mean.argmin()]), f"{law[place].min():.3f}"),
+                *(f"{math.sqrt((a**2).mean()):.3f}" for a in (mean - law[place], error)),
+            )
         )
+    text = table(COLUMNS, rows)
+    print(text)
+    if arguments.page:
+        replace_block(arguments.page, "pileup", text)
     axes.set(
         xlabel="along the channel x  [a0];  gravity to the right",
         ylabel="fluid particles per a0$^2$ over $n_f$",

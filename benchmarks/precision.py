@@ -29,7 +29,7 @@ Array = NDArray[np.float64]
 
 ERRORS = ("2%", "1%")
 RUNS = 30
-SERIES = 200  # of a kind
+SERIES = 1000  # of a kind
 LONGEST = 2**18  # samples
 FIRST = 200  # samples at the first look
 WIDTH = 0.5  # standard deviation over mean
@@ -41,15 +41,21 @@ def two_times(random: np.random.Generator) -> Array:
     return np.asarray(math.sqrt(0.9) * fast + math.sqrt(0.1) * slow)
 
 
-def energies(random: np.random.Generator) -> Array:
-    """Squares: where a stretch is large it fluctuates more, so value and error go together."""
+def squares(random: np.random.Generator) -> Array:
+    """Where a stretch is large it fluctuates more, so value and error go together."""
     return np.asarray((autoregressive(10.0, LONGEST, random) ** 2 - 1) / math.sqrt(2))
+
+
+def energies(random: np.random.Generator) -> Array:
+    """Squares again, alone: as kinetic energies, and displacements for D."""
+    return np.asarray((autoregressive(2.5, LONGEST, random) ** 2 - 1) / WIDTH)
 
 
 SYNTHETIC: dict[str, Callable[[np.random.Generator], Array]] = {
     "AR(1), tau = 5 samples": lambda random: autoregressive(5.0, LONGEST, random),
     "10% of the variance slow, tau = 40": two_times,
-    "squares of AR(1), tau = 10": energies,
+    "squares of AR(1), tau = 2.5": energies,
+    "squares of AR(1), tau = 10, upon 1.8 times their mean": squares,
 }
 
 

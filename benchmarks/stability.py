@@ -1,18 +1,20 @@
 """Where the method holds, where it is inaccurate and where it breaks, one axis at a time.
 
     python benchmarks/stability.py --out runs/stability [--axis tau_MD ...] [--long] [--jobs 2]
+                                   [--page docs/stability.md]
 
 Every point is a run directory; the command may be stopped and given again. A point is
 
 - refused: the scene says so, before anything runs;
 - broken: stopped by an error, without a number, or off by more than `Criterion.broken`;
 - inaccurate: off by more than `Criterion.inaccurate`;
-- stable: neither.
+- stable: neither, and not off by more than `Criterion.broken` for certain;
+- open: neither, and not even that is certain.
 
-Off means beyond the limit by two standard errors. What is broken or inaccurate has to be told by
-somebody, the scene's warning, the engine's error or a note of the analysis; the exit code is 1 when
-a broken point is told by nobody. Prints the table and writes it, with the map (stability.png),
-into the folder.
+Off means that the whole 95 % interval is beyond the limit. What is broken or inaccurate has to be
+told by somebody, the scene's warning, the engine's error or a note of the analysis; the exit code
+is 1 when a broken point is told by nobody. Prints the table and writes it, with the map
+(stability.png), into the folder; the states of each axis into the page.
 """
 
 import argparse
@@ -26,16 +28,17 @@ from typing import Any, Literal
 
 from matplotlib.figure import Figure
 
-from analysis import RunDirectoryError
+from analysis import Estimate, RunDirectoryError
 from analysis.analyze import summary_of
 from lammps_inputs import SceneError, make_scene
 from lammps_inputs.deck import check_engine, warnings
 from lammps_inputs.viscosity import viscosity
+from narrows.markdown import number, replace_block, table
 from run_files.progress import is_begun, read_failure
 from srd_driver.sweep import Run, available_cores, is_finished, run_all
 
-State = Literal["refused", "broken", "inaccurate", "stable"]
-COLOURS = {"refused": "0.6", "broken": "C3", "inaccurate": "C1", "stable": "C2"}
+State = Literal["refused", "broken", "inaccurate", "open", "stable"]
+COLOURS = {"refused": "0.6", "broken": "C3", "inaccurate": "C1", "open": "C0", "stable": "C2"}
 
 Fields = dict[str, Any]
 CHANNEL: Fields = {"duration": 300, "equilibration": 20}
@@ -78,8 +81,7 @@ class Point:
     value: float
     run: Run | None = None
     state: State = "stable"
-    ratio: float | None = None
-    error: float = 0.0
+    ratio: Estimate | None = None
     told: list[str] = field(default_factory=list)
 
 
@@ -293,17 +295,20 @@ def judge(point: Point, failure: str | None) -> None:
     if criterion.ratio.endswith("/ g"):
         assert unit
         unit *= point.value
-    if entry["value"] is None or entry["error"] is None or not unit:
+    estimate = Estimate.of_json(entry)
+    if estimate.value is None or estimate.error is None or not unit:
         point.state = "broken"
-        reason = entry.get("reason", "theory has none")
+        reason = estimate.reason or "theory has none"
         point.told.append(f"analysis: {criterion.ratio}: {reason}")
         return
-    point.ratio, point.error = entry["value"] / unit, entry["error"] / unit
-    off = abs(point.ratio - 1) - 2 * point.error
-    if off > criterion.broken or not math.isfinite(off):
+    point.ratio = estimate / unit
+    off, reach = abs(point.ratio.number - 1), point.ratio.half_width()
+    if off - reach > criterion.broken or not math.isfinite(off + reach):
         point.state = "broken"
-    elif off > criterion.inaccurate:
+    elif off - reach > criterion.inaccurate:
         point.state = "inaccurate"
+    elif off + reach > criterion.broken:
+        point.state = "open"
 
 
 def _cause(failure: str) -> str:
@@ -314,25 +319,30 @@ def _cause(failure: str) -> str:
 
 def map_table(judged: list[Point]) -> str:
     """One row an axis: its values by state."""
-    states: tuple[State, ...] = ("stable", "inaccurate", "broken", "refused")
-    rows = [f"| axis | must be 1 | {' | '.join(states)} |", "|---|---|---|---|---|---|"]
+    states: tuple[State, ...] = ("stable", "open", "inaccurate", "broken", "refused")
+    rows = []
     for axis in dict.fromkeys(point.axis for point in judged):
         cells = [
             ", ".join(f"{p.value:g}" for p in judged if p.axis is axis and p.state == state)
             for state in states
         ]
-        rows.append(f"| {axis.name} | {axis.criterion.ratio} | {' | '.join(cells)} |")
-    return "\n".join(rows)
+        rows.append((axis.name, axis.criterion.ratio, *cells))
+    return table(("axis", "must be 1", *states), rows)
 
 
-def table(judged: list[Point]) -> str:
+def table_of_points(judged: list[Point]) -> str:
     """One row a point."""
-    rows = ["| axis | value | ratio | state | told by |", "|---|---|---|---|---|"]
-    for point in judged:
-        ratio = "" if point.ratio is None else f"{point.ratio:.4g} +- {point.error:.2g}"
-        told = "; ".join(point.told).replace("\n", "; ")
-        rows.append(f"| {point.axis.name} | {point.value:g} | {ratio} | {point.state} | {told} |")
-    return "\n".join(rows)
+    rows = [
+        (
+            point.axis.name,
+            f"{point.value:g}",
+            number(point.ratio.value, point.ratio.error) if point.ratio else "",
+            point.state,
+            "; ".join(point.told).replace("\n", "; "),
+        )
+        for point in judged
+    ]
+    return table(("axis", "value", "ratio", "state", "told by"), rows)
 
 
 def draw(judged: list[Point], file: Path) -> None:
@@ -349,8 +359,8 @@ def draw(judged: list[Point], file: Path) -> None:
             if point.ratio is None:
                 panel.plot(place, high, "x", color=colour)
             else:
-                shown = min(max(point.ratio, low), high)
-                panel.errorbar(place, shown, point.error, fmt="o", color=colour)
+                shown = min(max(point.ratio.number, low), high)
+                panel.errorbar(place, shown, point.ratio.normal_error, fmt="o", color=colour)
         panel.axhspan(1 - axis.criterion.inaccurate, 1 + axis.criterion.inaccurate, color="0.92")
         labels = [f"{value:g}" for value in axis.values]
         panel.set_xticks(range(len(labels)), labels, rotation=60)
@@ -369,16 +379,19 @@ def main() -> int:
     parser.add_argument("--axis", nargs="*", help="only these")
     parser.add_argument("--long", action="store_true", help="also runs of up to 1e7 MD steps")
     parser.add_argument("--jobs", type=int, default=available_cores())
+    parser.add_argument("--page", type=Path, help="Markdown page whose table is renewed")
     options = parser.parse_args()
     axes = [*AXES, *(LONG if options.long else ())]
     if options.axis:
         axes = [axis for axis in axes if axis.name in options.axis]
     judged = points(options.out, axes)
     execute(judged, options.jobs)
-    text = f"{map_table(judged)}\n\n{table(judged)}"
+    text = f"{map_table(judged)}\n\n{table_of_points(judged)}"
     print(text)
     (options.out / "stability.md").write_text(text + "\n", encoding="utf-8")
     draw(judged, options.out / "stability.png")
+    if options.page:
+        replace_block(options.page, "table", map_table(judged))
     silent = [point for point in judged if point.state == "broken" and not point.told]
     for point in silent:
         print(f"broken without a word: {point.axis.name} = {point.value:g}", file=sys.stderr)

@@ -94,10 +94,19 @@ def test_the_python_of_the_readme(capsys: pytest.CaptureFixture[str]) -> None:
     assert len(capsys.readouterr().out.strip().splitlines()) == 5  # a line a colloid
 
 
-@pytest.mark.parametrize("results", RESULTS, ids=lambda path: path.stem)
-def test_tables_of_papers_are_those_of_the_results_kept(results: Path, tmp_path: Path) -> None:
-    page = tmp_path / "page.md"
-    page.write_text((ROOT / "docs" / "reproduce.md").read_text(encoding="utf-8"), encoding="utf-8")
-    before = page.read_text(encoding="utf-8")
-    renew_table(str(results), str(page), results.stem)
-    assert page.read_text(encoding="utf-8") == before
+THESIS = "tabatabaei-2009.json"
+TABLES = [
+    *((results.name, "reproduce.md", results.stem) for results in RESULTS),
+    *((THESIS, "beyond.md", figure) for figure in ("beyond-flux", "beyond-front")),
+]
+
+
+@pytest.mark.parametrize(("results", "page", "name"), TABLES)
+def test_tables_of_papers_are_those_of_the_results_kept(
+    results: str, page: str, name: str, tmp_path: Path
+) -> None:
+    before = (ROOT / "docs" / page).read_text(encoding="utf-8")
+    copy = tmp_path / page
+    copy.write_text(before, encoding="utf-8")
+    renew_table(str(ROOT / "docs" / "results" / results), str(copy), name)
+    assert copy.read_text(encoding="utf-8") == before

@@ -1,6 +1,9 @@
-"""The table of a page from results.json: `python -m narrows.papers.table RESULTS PAGE NAME`.
+"""Tables of pages from results.json.
 
-NAME is the paper, or a figure of it that is a page of its own; the page has its marks.
+    python -m narrows.papers.table RESULTS PAGE PAPER     # what is held against the paper
+    python -m narrows.papers.table RESULTS PAGE FIGURE    # all numbers of a figure
+
+The page has the marks of the paper or of the figure.
 """
 
 import sys
@@ -26,14 +29,25 @@ def compared_table(entries: list[dict[str, Any]]) -> str:
     return table(COLUMNS, rows)
 
 
-def main(results: str, page: str, name: str, *figures: str) -> None:
-    """Renew the table of the page; with figures, of these only."""
-    entries = [
-        entry
-        for entry in read_json_list(Path(results))
-        if not figures or entry["figure"] in figures
-    ]
-    replace_block(Path(page), name, compared_table(entries))
+def figure_table(entries: list[dict[str, Any]]) -> str:
+    """All numbers of a figure, with what the paper has of them."""
+    rows = []
+    for entry in entries:
+        paper = entry["claim"] or ""
+        if entry["paper"] is not None:
+            paper = f"{entry['paper']:.4g}"
+        here = number(entry["value"], entry["error"])
+        verdict = WORDS[entry["agrees"]] if paper else ""
+        rows.append((entry["quantity"], here, paper, verdict))
+    return table(COLUMNS[1:], rows)
+
+
+def main(results: str, page: str, name: str) -> None:
+    """Renew the table of the page."""
+    entries = read_json_list(Path(results))
+    of_figure = [entry for entry in entries if entry["figure"] == name]
+    text = figure_table(of_figure) if of_figure else compared_table(entries)
+    replace_block(Path(page), name, text)
 
 
 if __name__ == "__main__":

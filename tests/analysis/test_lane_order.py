@@ -4,7 +4,13 @@ import numpy as np
 import pytest
 from numpy.typing import NDArray
 
-from analysis.lane_order import colour_structure, lane_order, lane_order_printed
+from analysis.lane_order import (
+    REACH,
+    colour_structure,
+    lane_order,
+    lane_order_near,
+    lane_order_printed,
+)
 
 Array = NDArray[np.float64]
 
@@ -12,7 +18,11 @@ COLOURS = np.arange(200) % 2
 
 
 def brute_force(
-    positions: Array, colours: NDArray[Any], lengths: list[float], axes: list[int]
+    positions: Array,
+    colours: NDArray[Any],
+    lengths: list[float],
+    axes: list[int],
+    reach: float = np.inf,
 ) -> Array:
     """Every pair of every frame, delhommelle-2005, II."""
     frames, particles, dimension = positions.shape
@@ -20,12 +30,13 @@ def brute_force(
     alone = np.zeros(frames)
     for t in range(frames):
         for i in range(particles):
-            distances = []
+            distances = [np.inf]
             for j in range(particles):
                 if colours[i] != colours[j]:
-                    d = positions[t, i, axes] - positions[t, j, axes]
-                    d -= np.array(lengths)[axes] * np.round(d / np.array(lengths)[axes])
-                    distances.append(np.sqrt((d**2).sum()))
+                    d = positions[t, i] - positions[t, j]
+                    d -= lengths * np.round(d / lengths)
+                    if np.sqrt((d**2).sum()) <= reach:
+                        distances.append(np.sqrt((d[axes] ** 2).sum()))
             alone[t] += min(distances) > spacing
     return np.asarray(alone / particles)
 
@@ -41,6 +52,9 @@ def test_brute_force(lengths: list[float]) -> None:
     assert 0 < expected.mean() < 1
     along = brute_force(positions, colours, lengths, [0])
     assert lane_order_printed(positions, colours, lengths).tolist() == along.tolist()
+    near = brute_force(positions, colours, lengths, across, REACH[len(lengths)])
+    assert lane_order_near(positions, colours, lengths) == pytest.approx(near, rel=1e-12)
+    assert near.mean() > expected.mean()
 
 
 def stripes(axis: int, dimension: int = 2) -> tuple[Array, Array]:
@@ -57,6 +71,7 @@ def test_lanes_along_the_field_and_the_erratum(dimension: int) -> None:
     """Two lanes along x: the lateral distance sees them, the printed one, along x, does not."""
     positions, lengths = stripes(1, dimension)
     assert lane_order(positions, COLOURS, lengths).tolist() == [1] * 4
+    assert lane_order_near(positions, COLOURS, lengths).tolist() == [1] * 4
     assert lane_order_printed(positions, COLOURS, lengths).max() < 0.02
     bands, _ = stripes(0, dimension)
     assert lane_order_printed(bands, COLOURS, lengths).tolist() == [1] * 4
@@ -90,6 +105,18 @@ def test_a_well_mixed_gas() -> None:
     positions = random.uniform(0, lengths, (20, 896, 2))
     order = lane_order(positions, np.arange(896) % 2, lengths)
     assert order.mean() < 1e-3
+
+
+def test_a_well_mixed_gas_among_neighbours() -> None:
+    """None of 448 in the part |y| < 1 of a circle of radius 1.5."""
+    random = np.random.default_rng(5)
+    lengths = np.sqrt([896.0, 896.0])
+    positions = random.uniform(0, lengths, (60, 896, 2))
+    order = lane_order_near(positions, np.arange(896) % 2, lengths)
+    area = 2 * (np.sqrt(1.5**2 - 1) + 1.5**2 * np.arcsin(1 / 1.5))
+    error = order.std(ddof=1) / np.sqrt(len(order))
+    assert abs(order.mean() - (1 - area / 896) ** 448) < 4 * error
+    assert error < 0.002
 
 
 def test_the_distance_is_periodic() -> None:

@@ -12,9 +12,11 @@ from lammps_inputs import Scene
 from narrows.papers.delhommelle_2005.state_points import (
     CRYSTAL,
     FLUID,
+    PHI,
     disks,
     ladders_of,
     largest,
+    number,
     numbers,
 )
 from narrows.papers.drawing import one_panel, paper_remark, points
@@ -118,9 +120,9 @@ def _temperature_and_order(
     thermostat: str, key: str, directories: Directories, quality: Quality
 ) -> tuple[Figure, dict[str, Column], dict[str, dict[float, Estimate]]]:
     scenes = _crystals(thermostat, quality)
-    series = _series(directories, scenes, (key, "lane_order", "bond_order"))
+    series = _series(directories, scenes, (key, PHI, "bond_order"))
     figure, axes = one_panel(FIELD, f"{key.replace('_', ' ')}, order parameters")
-    labels = (key.replace("_", " "), r"lane order $\phi$", r"bond order $\psi_6$")
+    labels = (key.replace("_", " "), r"lane order $\phi$ among neighbours", r"bond order $\psi_6$")
     for place, (label, values) in enumerate(zip(labels, series.values(), strict=True)):
         points(axes, list(scenes), values, place, label=label)
     if max(scenes) > 20:
@@ -135,6 +137,7 @@ def _figure_2(directories: Directories, quality: Quality) -> Outcome:
     key = "configurational_temperature"
     figure, table, found = _temperature_and_order("kinetic", key, directories, quality)
     crystal = PaperNumber.printed("0.75")
+    crystals = _crystals("kinetic", quality)
     results = [
         compared("2", "psi_6 at F = 0.5", found["bond_order"][0.5], crystal),
         claimed(
@@ -144,7 +147,10 @@ def _figure_2(directories: Directories, quality: Quality) -> Outcome:
             "the crystal melts at F = 1.25",
             "positive",
         ),
-        compared("2", "phi at F = 6", found["lane_order"][6.0], PaperNumber.printed("0.8"), HERE),
+        compared("2", "phi at F = 6", found[PHI][6.0], PaperNumber.printed("0.8"), HERE),
+        measured(
+            "2", "phi of all disks at F = 6", number(directories, crystals[6.0], "lane_order")
+        ),
         compared(
             "2", "psi_6 at F = 4", found["bond_order"][4.0], PaperNumber.printed("0.59"), HERE
         ),
@@ -170,11 +176,11 @@ def _snapshots(
 ) -> tuple[Figure, dict[str, Column], list[Estimate]]:
     figure = Figure(figsize=(3.0 * len(scenes), 3.4), layout="constrained")
     panels = figure.subplots(1, len(scenes), squeeze=False)[0]
-    order = numbers(directories, scenes.values(), "lane_order")
+    order = numbers(directories, scenes.values(), PHI)
     for axes, (field, scene), phi in zip(panels, scenes.items(), order, strict=True):
         _draw_disks(axes, directories, scene)
         axes.set_title(f"F = {field:g}, $\\phi$ = {phi.number:.2f}", fontsize=9)
-    return figure, _table(scenes, {"lane_order": order}), order
+    return figure, _table(scenes, {PHI: order}), order
 
 
 def _broken(quality: Quality) -> dict[float, Scene]:
@@ -199,7 +205,7 @@ def _map_of_order(
     thermostat: str, directories: Directories, quality: Quality
 ) -> tuple[Figure, dict[str, Column], dict[tuple[float, float], Estimate]]:
     scenes = _map(thermostat, quality)
-    order = dict(zip(scenes, numbers(directories, scenes.values(), "lane_order"), strict=True))
+    order = dict(zip(scenes, numbers(directories, scenes.values(), PHI), strict=True))
     figure, axes = one_panel(FIELD, "density $n$")
     density, field = np.array(list(scenes)).T
     shown = axes.scatter(
@@ -214,13 +220,13 @@ def _map_of_order(
     )
     for (n, f), phi in order.items():
         axes.annotate(f"{phi.number:.2f}", (f, n), ha="center", va="center", color="w", fontsize=6)
-    figure.colorbar(shown, label=r"lane order $\phi$")
+    figure.colorbar(shown, label=r"lane order $\phi$ among neighbours")
     axes.margins(0.15)
     table: dict[str, Column] = {
         "density": density.tolist(),
         "field": field.tolist(),
-        "lane_order": [each.value for each in order.values()],
-        "lane_order_error": [each.error for each in order.values()],
+        PHI: [each.value for each in order.values()],
+        f"{PHI}_error": [each.error for each in order.values()],
     }
     return figure, table, order
 
@@ -279,7 +285,7 @@ def _figure_5(directories: Directories, quality: Quality) -> Outcome:
 def _figure_6(directories: Directories, quality: Quality) -> Outcome:
     key = "kinetic_temperature"
     figure, table, found = _temperature_and_order("configurational", key, directories, quality)
-    order = largest(list(found["lane_order"].values()))
+    order = largest(list(found[PHI].values()))
     results = [
         compared("6", "psi_6 at F = 0.5", found["bond_order"][0.5], PaperNumber.printed("0.75")),
         compared("6", "T_kin at F = 0.5", found[key][0.5], PaperNumber.printed("1.0")),

@@ -9,7 +9,7 @@ from matplotlib.figure import Figure
 
 from analysis.estimate import Estimate
 from lammps_inputs import Scene, make_scene
-from narrows.papers.delhommelle_2005.state_points import FLUID, numbers
+from narrows.papers.delhommelle_2005.state_points import FLUID, PHI, numbers
 from narrows.papers.drawing import points
 from narrows.papers.figure import Column, Directories, Outcome, PaperFigure, Quality
 from narrows.papers.results import Result, claimed, measured
@@ -19,7 +19,7 @@ SOLVENT = {"on": "hydrodynamic", "shuffle": "shuffled solvent", "bath": "bath"}
 OTHERS = {"langevin": "Langevin", "dpd": "dissipative pairs"}
 NAMES = SOLVENT | OTHERS
 KEYS = (
-    *("current", "colour_structure", "lane_order", "number_variance"),
+    *("current", "colour_structure", "lane_order", PHI, "number_variance"),
     *("configurational_temperature", "kinetic_temperature", "stream_temperature"),
 )
 VISCOUS = {"solvent_density": 10.0, "mass": 10.0, "collision_time": 0.02, "time_step": 0.005}
@@ -108,7 +108,7 @@ def _results(of: dict[str, dict[tuple[str, float, float], Estimate]]) -> list[Re
     for density in sorted({n for _, n, _ in of["current"]}):
         place = f"n = {density:g}, F = {strongest:g}"
         for noise, name in NAMES.items():
-            for key in ("colour_structure", "lane_order", "configurational_temperature"):
+            for key in ("colour_structure", "lane_order", PHI, "configurational_temperature"):
                 value = of[key][noise, density, strongest]
                 results.append(measured(NOISE, f"{key}, {name}, {place}", value))
         bath, fluid = (of["colour_structure"][h, density, strongest] for h in ("bath", "on"))

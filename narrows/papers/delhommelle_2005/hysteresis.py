@@ -3,7 +3,7 @@
 from matplotlib.figure import Figure
 
 from lammps_inputs import Scene
-from narrows.papers.delhommelle_2005.state_points import CRYSTAL, DOWN, disks, numbers
+from narrows.papers.delhommelle_2005.state_points import CRYSTAL, DOWN, PHI, disks, numbers
 from narrows.papers.drawing import points
 from narrows.papers.figure import Column, Directories, Outcome, PaperFigure, Quality
 from narrows.papers.results import Result, measured
@@ -11,7 +11,7 @@ from narrows.papers.results import Result, measured
 NUMBER = "beyond-hysteresis"
 KEYS = {
     "bond_order": r"bond order $\psi_6$",
-    "lane_order": r"lane order $\phi$",
+    PHI: r"lane order $\phi$ among neighbours",
     "configurational_temperature": "configurational temperature",
 }
 

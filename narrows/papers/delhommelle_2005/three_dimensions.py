@@ -10,6 +10,7 @@ from analysis.periodic import wrapped
 from analysis.run_directory import RunDirectory
 from lammps_inputs import Scene
 from narrows.papers.delhommelle_2005.state_points import (
+    PHI,
     THERMOSTATS,
     ladders_of,
     largest,
@@ -41,11 +42,11 @@ def _figure_9(directories: Directories, quality: Quality) -> Outcome:
     figure = Figure(figsize=(9.4, 4.1), layout="constrained")
     left, right = figure.subplots(1, 2)
     columns: dict[str, list[float | int | str | None]] = {
-        name: [] for name in ("thermostat", "field", "pressure", "lane_order", "lane_order_error")
+        name: [] for name in ("thermostat", "field", "pressure", PHI, f"{PHI}_error")
     }
     order, pressure = dict[str, list[Estimate]](), dict[str, list[Estimate]]()
     for place, (thermostat, scenes) in enumerate(_driven(quality).items()):
-        order[thermostat] = numbers(directories, scenes.values(), "lane_order")
+        order[thermostat] = numbers(directories, scenes.values(), PHI)
         pressure[thermostat] = numbers(directories, scenes.values(), "pressure")
         points(left, list(scenes), pressure[thermostat], place, label=THERMOSTATS[thermostat])
         points(right, list(scenes), order[thermostat], place)
@@ -55,7 +56,7 @@ def _figure_9(directories: Directories, quality: Quality) -> Outcome:
             for name, value in zip(columns, values, strict=True):
                 columns[name].append(value)
     left.set(xlabel="field $F$", ylabel="pressure, potential part")
-    right.set(xlabel="field $F$", ylabel=r"lane order $\phi$", ylim=(0, 1))
+    right.set(xlabel="field $F$", ylabel=r"lane order $\phi$ among neighbours", ylim=(0, 1))
     left.legend()
     results: list[Result] = []
     for thermostat, limit in MIXED.items():
