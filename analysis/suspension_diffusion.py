@@ -21,6 +21,7 @@ from analysis.estimate import Estimate, jackknife
 CUBIC = 2.837297  # of the Ewald sum of a cubic lattice
 TERMS = 50  # of (35), in collisions, as in IX B
 LEAST_LAGS = 4
+WAVES = 20  # of a box along an axis, either way
 
 
 @dataclass(frozen=True)
@@ -98,3 +99,31 @@ def infinite_box(diffusion: Estimate, viscosity: float, edge: float) -> Estimate
         return diffusion
     more = CUBIC / (6 * math.pi * viscosity * edge)
     return replace(diffusion, value=diffusion.value + more)
+
+
+def outstanding_diffusion(
+    diffusion: float, viscosity: float, density: float, edge: float, times: Array
+) -> float:
+    """What a periodic box and a finite lag take from D of a particle of a fluid, by mode coupling.
+
+    A particle gives its momentum to shear waves, and meets it again while they decay and it
+    diffuses itself: its velocity correlation is 2 kBT / (3 rho V) times the sum over the waves k of
+    exp(-(nu + D) k^2 t) (B. Alder, D. Gass and T. Wainwright, J. Chem. Phys. 53, 3813, 1970; J.
+    Erpenbeck and W. Wood, Phys. Rev. A 26, 1648, 1982). In an infinite box the sum is an integral;
+    the difference, over all times, is 2.837 kBT / (6 pi rho (nu + D) L), as in `infinite_box`,
+    where D is small beside nu. After a time t the waves of the box are still to come.
+
+    Args:
+        diffusion: D [a0^2/t0].
+        viscosity: dynamic, rho nu [m_f/(a0 t0)].
+        density: of mass, rho [m_f/a0^3].
+        edge: of the cubic box, L [a0].
+        times: at which half the slope of the mean squared displacement is taken, and averaged.
+    """
+    decay = viscosity / density + diffusion
+    images = CUBIC / (6 * math.pi * density * decay * edge)
+    n = np.arange(-WAVES, WAVES + 1) ** 2
+    squares = np.sort((n[:, None, None] + n[:, None] + n).ravel())[1:]
+    rates = decay * (2 * math.pi / edge) ** 2 * squares
+    late = np.mean([np.sum(np.exp(-rates * t) / rates) for t in times])
+    return images + 2 / (3 * density * edge**3) * float(late)

@@ -91,8 +91,13 @@ class HardSphereScene(Scene):
     def measured(self) -> tuple[str, ...]:
         """Of the paths where colours cannot react, or of the colours."""
         if self.soft:
-            return ("path_diffusivity", "self_diffusion", "particle_averages")
-        of_paths = ("self_diffusion",) if self.trajectory else ()
+            return (
+                "path_diffusivity",
+                "middle_displacement",
+                "self_diffusion",
+                "particle_averages",
+            )
+        of_paths = ("middle_displacement", "self_diffusion") if self.trajectory else ()
         return ("color_diffusivity", "reacted_speeds", "hard_sphere_averages", *of_paths)
 
     def clock(self) -> Clock:

@@ -6,7 +6,8 @@ distance from central particles. docs/diffusivity.md says when to use which.
 
 from analysis.diffusivity.bayes import BayesianDiffusivity
 from analysis.diffusivity.color import ColorDiffusivity, color_diffusivity
-from analysis.diffusivity.coordinates import AlongAxis, Coordinate, PairDistance
+from analysis.diffusivity.coordinates import AlongAxis, Coordinate, PairDistance, Recorded
+from analysis.diffusivity.displacement import MiddleDiffusivity
 from analysis.diffusivity.errors import DiffusivityError
 from analysis.diffusivity.first_passage import FirstPassageDiffusivity
 
@@ -17,6 +18,8 @@ __all__ = [
     "Coordinate",
     "DiffusivityError",
     "FirstPassageDiffusivity",
+    "MiddleDiffusivity",
     "PairDistance",
+    "Recorded",
     "color_diffusivity",
 ]

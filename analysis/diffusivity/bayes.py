@@ -27,6 +27,12 @@ ROUGHNESS = tuple(np.geomspace(0.05, 5, 9))  # change of log D over a length of 
 _TINY = 1e-300
 
 
+def _squares(bins: int) -> Array:
+    """Square of the bins between two, (B, B)."""
+    number = np.arange(bins)
+    return np.asarray((number[:, None] - number[None, :]) ** 2, dtype=float)
+
+
 class TransitionLikelihood:
     """Log-likelihood of transition counts as a function of log D at the faces between bins.
 
@@ -233,7 +239,6 @@ class BayesianDiffusivity(AnalysisBase):  # type: ignore[misc]
             raise DiffusivityError(f"no walker was ever in the bin at {empty:.4g}: fewer bins")
         population = self._number / self._number.sum()
         profiles, errors, posteriors = [], [], []
-        guess = np.full(self._bins - 1, np.log(self._width**2 / step))
         for lag, count in zip(self._lags, counts, strict=True):
             crossings = [
                 int((count[f:, :f]).sum() + (count[:f, f:]).sum()) for f in range(1, self._bins)
@@ -244,6 +249,8 @@ class BayesianDiffusivity(AnalysisBase):  # type: ignore[misc]
                     f"{MIN_CROSSINGS} are needed: a longer trajectory or shorter lags"
                 )
             likelihood = TransitionLikelihood(count, population, self._width, lag * step)
+            moved = self._width**2 * float((count * _squares(self._bins)).sum() / count.sum())
+            guess = np.full(self._bins - 1, np.log(moved / (2 * lag * step)))
             posterior, guess, covariance = smoothed(likelihood, self._width, guess)
             profiles.append(np.exp(guess))
             errors.append(np.exp(guess) * np.sqrt(np.maximum(np.diag(covariance), 0)))

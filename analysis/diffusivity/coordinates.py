@@ -2,7 +2,9 @@
 
 from typing import Any, Protocol
 
+import MDAnalysis
 import numpy as np
+from MDAnalysis.coordinates.memory import MemoryReader
 from MDAnalysis.lib.distances import distance_array
 
 from analysis.arrays import Array
@@ -60,3 +62,26 @@ class PairDistance:
         box = self._atoms.dimensions
         distances = distance_array(self._centers.positions, self._atoms.positions, box=box)
         return np.asarray(distances.ravel()[self._paired], dtype=float)
+
+
+class Recorded:
+    """A coordinate that is known already, as of walkers of several runs side by side.
+
+    Args:
+        values: of each walker in each frame, (T, walkers).
+        interval: between frames.
+    """
+
+    def __init__(self, values: Array, interval: float) -> None:
+        if values.ndim != 2 or values.size == 0:
+            raise DiffusivityError(f"values: {values.shape}; they must be (frames, walkers)")
+        if not 0 < interval < np.inf:
+            raise DiffusivityError(f"interval: {interval:g}; it must be positive")
+        frames = MDAnalysis.Universe.empty(1, trajectory=True)
+        nowhere = np.zeros((len(values), 1, 3), dtype=np.float32)
+        frames.load_new(nowhere, format=MemoryReader, dt=interval)
+        self.trajectory = frames.trajectory
+        self._values = values
+
+    def values(self) -> Array:
+        return np.asarray(self._values[self.trajectory.frame])

@@ -14,6 +14,7 @@ from analysis.arrays import Array
 from analysis.diffusivity.bayes import BayesianDiffusivity
 from analysis.diffusivity.color import ColorDiffusivity
 from analysis.diffusivity.coordinates import AlongAxis
+from analysis.diffusivity.displacement import MiddleDiffusivity
 from analysis.diffusivity.errors import DiffusivityError
 from analysis.diffusivity.first_passage import FirstPassageDiffusivity
 
@@ -180,6 +181,17 @@ def _estimate(
         results.error[known],
         remark,
     )
+
+
+def in_the_middle(atoms: Any, axis: str) -> str:
+    """D by displacements that begin in the middle, one line; or why there is none."""
+    least, most, *_ = reach_of(atoms, axis)
+    try:
+        found = MiddleDiffusivity(AlongAxis(atoms, axis), least, most).run().results
+    except DiffusivityError as error:
+        return f"none: {error}"
+    first, last = found.window
+    return f"D = {found.diffusivity:.4g} +- {found.error:.2g}, lags {first:g} to {last:g}"
 
 
 def write(found: list[Estimated], axis: str, out: Path) -> list[Path]:

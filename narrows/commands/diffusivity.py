@@ -34,7 +34,12 @@ def diffusivity(
 ) -> None:
     """Estimate D across a slit from a trajectory, by colours, likelihood and first passage."""
     from analysis.diffusivity import DiffusivityError  # here, so that `--help` stays fast
-    from analysis.diffusivity.trajectory import estimate_all, open_trajectory, write
+    from analysis.diffusivity.trajectory import (
+        estimate_all,
+        in_the_middle,
+        open_trajectory,
+        write,
+    )
 
     with user_errors():
         try:
@@ -51,4 +56,5 @@ def diffusivity(
                 f"{each.estimator}: D = {each.diffusivity[middle]:.4g} +- {each.error[middle]:.2g} "
                 f"at {axis} = {each.positions[middle]:.4g}; {each.remark}"
             )
+        say(f"displacements from the middle third: {in_the_middle(atoms, axis)}")
         say(f"written: {', '.join(map(str, write(found, axis, out)))}")

@@ -48,13 +48,13 @@ def status(
 def _tell_reproduction(plan: "Plan") -> None:
     """A line for each figure, one for each run that is under way or in trouble, and a sum."""
     say(f"{plan.paper.name}, {plan.quality} quality")
-    found = {run.scene: _status_or_damage(run) for run in plan.runs}
+    found = {scene: _status_or_damage(run) for scene, run in plan.run_by_scene.items()}
     width = max(len(figure.number) for figure in plan.figures)
     for figure in plan.figures:
         entries = [found[scene] for scene in dict.fromkeys(figure.scenes(plan.quality))]
         say(f"  {figure.number:<{width}}  {_counts(entries) or 'needs no runs'}")
-    for run in plan.runs:
-        entry = found[run.scene]
+    for scene, run in plan.run_by_scene.items():
+        entry = found[scene]
         if entry.state in ("failed", "running", "stopped"):
             say(f"  {run.folder.name}  {_line(entry)}")
     say(f"  {len(plan.runs)} runs: {_counts(found.values()) or 'none needed'}")

@@ -12,7 +12,12 @@ from analysis.estimate import Estimate
 from analysis.normality import FALSE_ALARMS, normality
 from analysis.radial_distribution import radial_distribution
 from analysis.sedimentation import richardson_zaki, settling_speeds
-from analysis.suspension_diffusion import infinite_box, suspension_diffusion
+from analysis.suspension_diffusion import (
+    CUBIC,
+    infinite_box,
+    outstanding_diffusion,
+    suspension_diffusion,
+)
 from tests.analysis.known import known
 
 BOX = (9.0, 9.0, 9.0)
@@ -85,6 +90,23 @@ def test_the_images_of_a_box_slow_diffusion_as_a_lattice_sum_says() -> None:
     assert larger.value is not None
     assert larger.value - 0.1 == pytest.approx(-constant / (6 * math.pi * 2.0 * 5.0), rel=1e-6)
     assert infinite_box(Estimate(None, None, "x"), 1.0, 1.0).value is None
+
+
+def test_what_is_outstanding_after_a_time_is_the_tail_of_an_infinite_box() -> None:
+    """While waves do not cross the box: 4/3 / (rho (4 pi (nu + D))^(3/2)) t^(-1/2).
+
+    And 2 t / (3 rho V) for the wave k = 0, which a box without momentum has not. After a long time
+    it is what the images take.
+    """
+    d, viscosity, density = 0.1, 1.06, 0.67
+    decay = viscosity / density + d
+    for time in (10.0, 20.0):
+        tail = 4 / 3 / (density * (4 * math.pi * decay) ** 1.5 * math.sqrt(time))
+        found = outstanding_diffusion(d, viscosity, density, 60.0, np.array([time]))
+        assert found == pytest.approx(tail + 2 * time / (3 * density * 60.0**3), rel=1e-4)
+    images = CUBIC / (6 * math.pi * density * decay * 5.0)
+    late = outstanding_diffusion(d, viscosity, density, 5.0, np.array([100.0]))
+    assert late == pytest.approx(images, rel=1e-6)
 
 
 @pytest.mark.parametrize("periodic", [(True, True, True), (True, True, False)])

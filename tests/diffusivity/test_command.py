@@ -1,6 +1,7 @@
 """`narrows diffusivity` on files of a known walk, in formats of others, and on bad input."""
 
 import csv
+import re
 from pathlib import Path
 from typing import Any
 
@@ -69,6 +70,10 @@ def test_a_trajectory_of_others(
         *("--axis", "z", "--out", tmp_path, "--by", by, *given),
     )
     assert all(f"{name}: D = " in told.stdout for name in by.split(","))
+    middle = re.search(r"displacements from the middle third: D = (\S+) \+- (\S+),", told.stdout)
+    assert middle
+    # D is 0.5 in the middle and 0.75 a quarter of the width away
+    assert 0.45 < float(middle[1]) < 0.75
     assert (tmp_path / "diffusivity.png").stat().st_size > 1000
     for name, (z, d, _) in profiles(tmp_path, by).items():
         middle = abs(z - walks.LENGTH / 2) < 1.2

@@ -15,7 +15,9 @@ from analysis.diffusivity import (
     ColorDiffusivity,
     DiffusivityError,
     FirstPassageDiffusivity,
+    MiddleDiffusivity,
     PairDistance,
+    Recorded,
     bayes,
     color_diffusivity,
 )
@@ -109,6 +111,15 @@ def test_the_prior_helps_where_a_lag_is_long(path: Array, monkeypatch: pytest.Mo
     assert deviation() > 2 * smooth
 
 
+def test_a_single_long_lag_of_fine_frames(path: Array) -> None:
+    """Where the likelihood is flat nothing leads to the top: the start is what walkers move by."""
+    coordinate = AlongAxis(walks.universe(path[:, :WALKERS]).atoms)
+    analysis = BayesianDiffusivity(coordinate, 0, walks.LENGTH, bins=4, lags=(80,), samples=0)
+    results = analysis.run().results
+    ratio = results.diffusivity / walks.diffusivity(results.positions)
+    assert ratio == pytest.approx(np.ones(3), abs=0.5)  # from the start width^2 / frame, 50 to 100
+
+
 def three_bins() -> TransitionLikelihood:
     counts = np.array([[90.0, 30, 5], [28, 80, 33], [6, 31, 70]])
     return TransitionLikelihood(counts, counts.sum(axis=0) / counts.sum(), 0.5, 0.2)
@@ -165,6 +176,47 @@ def test_likelihood_is_that_of_the_exponential_and_its_gradient() -> None:
     for n, unit in enumerate(np.eye(5)):
         difference = (likelihood.value(x + 1e-5 * unit) - likelihood.value(x - 1e-5 * unit)) / 2e-5
         assert gradient[n] == pytest.approx(difference, rel=1e-6)
+
+
+def flat_walk(walkers: int, frames: int, seed: int) -> Array:
+    """Of D = 1 between reflecting ends at 0 and LENGTH."""
+    random = np.random.default_rng(seed)
+    steps = random.normal(scale=np.sqrt(2 * walks.FRAME), size=(frames, walkers))
+    z = np.cumsum(steps, axis=0) + random.uniform(0, walks.LENGTH, walkers)
+    z = np.mod(z, 2 * walks.LENGTH)  # unfolded, the reflections are a longer box
+    return np.minimum(z, 2 * walks.LENGTH - z)
+
+
+def test_displacements_from_the_middle_of_a_flat_walk() -> None:
+    """D = 1 within the error bars; noise of each frame adds to the displacements, not to D."""
+    path = flat_walk(120, 1000, seed=7)
+    deviations = []
+    for first in range(0, 120, 10):
+        group = walks.universe(path[:, first : first + 10]).atoms
+        analysis = MiddleDiffusivity(AlongAxis(group), 0, walks.LENGTH, longest=10)
+        results = analysis.run().results
+        deviations.append((results.diffusivity - 1) / results.error)
+        # rms displacements of an eighth of the width: 0.5 = sqrt(2 t)
+        assert results.window[1] == pytest.approx(0.12, abs=0.03)
+        assert results.window[0] == pytest.approx(results.window[1] / 2, abs=walks.FRAME * 0.51)
+    assert np.sqrt(np.mean(np.square(deviations))) < 1.6
+    assert abs(np.mean(deviations)) < 1
+    noise = np.random.default_rng(5).normal(scale=0.1, size=path.shape)
+    group = walks.universe(path + noise).atoms
+    results = MiddleDiffusivity(AlongAxis(group), 0, walks.LENGTH, longest=10).run().results
+    assert results.diffusivity == pytest.approx(0.994, abs=4 * results.error)
+    assert results.msd[0] == pytest.approx(2 * walks.FRAME + 0.02, rel=0.05)
+    assert results.error < 0.05
+
+
+def test_displacements_by_hand() -> None:
+    """One walker begins in the middle and steps by 0.1 up and down: lags 2, 4, ... see nothing."""
+    z = np.full((200, 2), 0.1)  # the other never is in the middle
+    z[:, 0] = 2.0 + 0.1 * (np.arange(200) % 2)
+    results = MiddleDiffusivity(AlongAxis(walks.universe(z).atoms), 0, 4, longest=4).run().results
+    assert results.msd == pytest.approx([0.01, 0, 0.01, 0], abs=1e-6)
+    assert results.diffusivity == pytest.approx(0, abs=1e-6)
+    assert results.lags == pytest.approx(walks.FRAME * np.arange(1, 5))
 
 
 def test_local_derivative_of_a_cubic_is_exact() -> None:
@@ -231,12 +283,26 @@ def test_pair_distances_are_those_of_nearest_images() -> None:
     assert pairs.values() == pytest.approx([1, 4.5, far, 1, 4.5, far])
 
 
+def test_recorded_values_are_the_walkers_of_a_trajectory(path: Array) -> None:
+    """The same result as from the atoms of a Universe, but for their single precision."""
+
+    def profile(coordinate: Any) -> Any:
+        return BayesianDiffusivity(coordinate, 0, walks.LENGTH, bins=8, lags=(40,), samples=0).run()
+
+    group = walks.universe(path[:600, :50]).atoms
+    recorded = profile(Recorded(path[:600, :50], walks.FRAME)).results
+    assert recorded.diffusivity == pytest.approx(profile(AlongAxis(group)).results.diffusivity)
+    assert recorded.lag == pytest.approx(0.8)
+
+
 def still(walkers: int = 5, frames: int = 40) -> AlongAxis:
     return AlongAxis(walks.universe(np.full((frames, walkers), 2.0)).atoms)
 
 
 BAD: list[tuple[Callable[[], Any], str]] = [
     (lambda: AlongAxis(walks.universe(np.ones((3, 2))).atoms, "r"), "axis: 'r'; it must be"),
+    (lambda: Recorded(np.ones(3), 0.1), r"values: \(3,\); they must be \(frames, walkers\)"),
+    (lambda: Recorded(np.ones((3, 1)), 0), "interval: 0; it must be positive"),
     (lambda: ColorDiffusivity(still(), 2, 1), "low: 2; it must be below high, 1"),
     (lambda: ColorDiffusivity(still(), 1, 3, probability=0), r"probability: 0; it must be in \(0"),
     (lambda: ColorDiffusivity(still(), 1, 3, settle=1), r"settle: 1; it must be in \[0, 1\)"),
@@ -244,6 +310,11 @@ BAD: list[tuple[Callable[[], Any], str]] = [
     (lambda: ColorDiffusivity(still(), 1, 3).run(), "0 reactions; at least 100 are needed"),
     (lambda: ColorDiffusivity(still(), 1, 3).run(stop=5), "5 frames; more are needed"),
     (lambda: FirstPassageDiffusivity(still(), 1, 3).run(), "0 round trips to a level; at least 20"),
+    (lambda: MiddleDiffusivity(still(), 3, 1), "low: 3; it must be below high, 1"),
+    (lambda: MiddleDiffusivity(still(), 1, 3, longest=1), "longest: 1; a slope needs 2 lags"),
+    (lambda: MiddleDiffusivity(still(), 1, 3, blocks=2), "blocks: 2; at least 3"),
+    (lambda: MiddleDiffusivity(still(), 1, 3).run(stop=4), "4 frames; more are needed for 10"),
+    (lambda: MiddleDiffusivity(still(), 2, 6).run(), "0 displacements begin in the middle third"),
     (lambda: BayesianDiffusivity(still(), 1, 3, lags=(2, 1)), r"lags: \[2, 1\]; positive and inc"),
     (lambda: BayesianDiffusivity(still(), 1, 3, lag=3), "lag: 3; it must be one of the lags"),
     (lambda: BayesianDiffusivity(still(), 1, 3, bins=2), "bins: 2; at least 3"),

@@ -164,6 +164,19 @@ def test_numbers_of_a_pore(tmp_path: Path) -> None:
     assert density.sum() * 0.02 * edge**2 == pytest.approx(200, rel=1e-6)
 
 
+def test_displacements_in_the_middle_stand_beside_the_colours(tmp_path: Path) -> None:
+    """Of the same run: D across the walls by both; and only where there are paths."""
+    given = {"particles": 200, "sampling_interval": 0.5, "duration": 300.0, "equilibration": 50.0}
+    with Simulation(small("pore", **given), directory=tmp_path / "run") as simulation:
+        simulation.finish()
+    summary = analyze(tmp_path / "run")
+    middle, by_colors = summary["middle_displacement"], summary["diffusivity"]["p=0.1"]["middle"]
+    assert middle["window"][0] >= 0.5
+    assert middle["value"] == pytest.approx(by_colors["value"], rel=0.25)
+    assert middle["error"] < 0.1 * middle["value"]
+    assert "middle_displacement" not in small("pore", trajectory=False).system.measures
+
+
 def test_the_bulk_has_the_pressure_of_carnahan_and_starling(tmp_path: Path) -> None:
     scene = small("bulk_spheres", particles=300, cutoff=3.0, duration=60.0, equilibration=10.0)
     with Simulation(scene, directory=tmp_path / "run") as simulation:
@@ -200,6 +213,7 @@ def test_soft_spheres_leave_paths(spheres: str, tmp_path: Path) -> None:
     assert z.min() > 0.4  # the harmonic wall at 0.5 lets kBT in by 0.014
     assert z.max() < 4.6
     assert 0.1 < summary["path_diffusivity"]["bayes"]["middle"] < 0.5
+    assert 0.1 < summary["middle_displacement"]["value"] < 0.5
 
 
 def test_too_few_outputs_are_counted(tmp_path: Path) -> None:

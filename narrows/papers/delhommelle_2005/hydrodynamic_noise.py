@@ -9,7 +9,7 @@ from matplotlib.figure import Figure
 
 from analysis.estimate import Estimate
 from lammps_inputs import Scene, make_scene
-from narrows.papers.delhommelle_2005.state_points import FLUID, PHI, numbers
+from narrows.papers.delhommelle_2005.state_points import CRYSTAL, FLUID, PHI, numbers
 from narrows.papers.drawing import points
 from narrows.papers.figure import Column, Directories, Outcome, PaperFigure, Quality
 from narrows.papers.results import Result, claimed, measured
@@ -57,9 +57,8 @@ def noisy(
 
 def _points(quality: Quality) -> list[tuple[float, float]]:
     """Densities and fields."""
-    if quality == "quick":
-        return [(FLUID, 2.0), (FLUID, 5.0)]
-    return [(n, f) for n in (0.5, FLUID, 1.03) for f in (0.5, 1.0, 2.0, 5.0)]
+    fields = (2.0, 5.0) if quality == "quick" else (0.5, 1.0, 2.0, 5.0)
+    return [(n, f) for n in (0.5, FLUID, CRYSTAL) for f in fields]
 
 
 def _driven(quality: Quality) -> dict[tuple[str, float, float], Scene]:

@@ -69,7 +69,7 @@ def sheared(rate: float, thermostat: str, quality: Quality) -> Scene:
     quick = quality == "quick"
     step = 0.001 if rate <= 10 else 0.0002
     if thermostat == "configurational" and rate > 1:
-        step = 0.0005 if rate <= 2 else 0.0002 if rate <= 4 else 0.0001
+        step = 0.0005 if rate <= 2 else 0.0002 if rate <= 4 else 0.0001 if rate <= 5 else 0.00004
     return make_scene(
         "shear",
         rate=rate,

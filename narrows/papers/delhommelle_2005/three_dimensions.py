@@ -91,8 +91,8 @@ def _figure_9(directories: Directories, quality: Quality) -> Outcome:
 def _rates(thermostat: str, quality: Quality) -> tuple[float, ...]:
     """Those that a ladder outlives: docs/lanes.md."""
     if thermostat == "configurational":
-        quick, full = (1.0, 2.0, 4.0, 5.0, 6.0), (0.5, 1.0, 1.5, 2.0, 3.0, 4.0, 5.0, 6.0)
-        return quick if quality == "quick" else full
+        least = (1.0, 2.0) if quality == "quick" else (0.5, 1.0, 1.5, 2.0, 3.0)
+        return (*least, 4.0, 5.0, 6.0, 7.0, 8.0)
     if quality == "quick":
         return (1.0, 4.0, 7.0, 10.0, 20.0)
     return (0.5, 1.0, 1.5, 2.0, 3.0, 4.0, 5.0, 7.0, 10.0, 15.0, 20.0)
@@ -132,6 +132,14 @@ def _figure_10(directories: Directories, quality: Quality) -> Outcome:
             configurational[1.0] - configurational[4.0],
             "shear thinning below",
             "positive",
+        ),
+        claimed(
+            "10",
+            "viscosity at rate 8 less that at 6, configurational temperature fixed",
+            configurational[8.0] - configurational[6.0],
+            "shear thickening above 7",
+            "positive",
+            "the multiplier still falls, and T_conf is above the temperature set",
         ),
         claimed(
             "10",

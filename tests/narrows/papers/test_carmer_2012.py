@@ -20,12 +20,14 @@ QUALITIES: tuple[Quality, Quality] = ("quick", "full")
 @pytest.mark.parametrize("quality", QUALITIES)
 def test_every_run_can_be_done(quality: Quality, tmp_path: Path) -> None:
     paper = paper_named("carmer-2012")
-    assert [figure.number for figure in paper.figures] == ["1", "2", "3"]
+    numbers = [figure.number for figure in paper.figures]
+    assert numbers == ["1", "2", "3", "beyond-channel", "beyond-clay"]
     plan = Plan(paper, paper.figures, quality, tmp_path)
     for run in plan.runs:
         check_engine(run.scene, run.engine)
     # Figs. 1 and 2 share the run at packing 0.35
-    assert len(plan.runs) == 10
+    assert sum(run.engine == "events" for run in plan.runs) == 10
+    assert sum(run.scene.name == "claylike" for run in plan.runs) == 4
 
 
 def test_a_mean_and_its_error_by_hand() -> None:

@@ -63,3 +63,12 @@ def test_status_tells_of_each_figure_and_run(tmp_path: Path) -> None:
     done = CliRunner().invoke(app, ["status", str(out)])
     assert done.exit_code == 2
     assert done.stderr.startswith(f"narrows: {file}: damaged, or changed by hand")
+
+
+def test_the_status_of_ladders(tmp_path: Path) -> None:
+    """Runs that begin where others end are told of too."""
+    paper = paper_named("delhommelle-2005")
+    remember(Plan(paper, select(paper, ["10"]), "quick", tmp_path))
+    done = CliRunner().invoke(app, ["status", str(tmp_path)])
+    assert done.exit_code == 0
+    assert done.stdout.splitlines()[-1].split()[-1] == "waiting"
