@@ -1,13 +1,15 @@
 """The flow of the fluid for other programs: VTK image data (ParaView, OVITO), or numpy arrays."""
 
+import base64
+from collections.abc import Sequence
 from pathlib import Path
 from typing import Any
+from xml.etree import ElementTree
 
 import numpy as np
-from pyevtk.hl import imageToVTK
 
 from analysis.arrays import Array
-from analysis.run_directory import FlowField
+from analysis.flow_grid import FlowField
 
 SUFFIXES = (".vti", ".npz")
 
@@ -33,31 +35,55 @@ def export(field: FlowField, path: Path) -> None:
         raise ValueError(f"{path.name}: must end with {' or '.join(SUFFIXES)}")
     if len(field.steps) != 1:
         raise ValueError(f"{path.name}: of {len(field.steps)} averages; take their mean() first")
-    velocity = [field.velocity[0, ..., axis] for axis in range(len(field.axes))]
-    velocity += [np.zeros_like(velocity[0])] * (3 - len(velocity))
-    steps = [_step(axis) for axis in field.axes]
-    origin = [axis[0] - step / 2 for axis, step in zip(field.axes, steps, strict=True)]
-    imageToVTK(
-        str(path.with_suffix("")),
-        origin=_three(origin, 0.0),
-        spacing=_three(steps, 1.0),
-        cellData={
-            "count": _cells(field.counts[0]),
-            "velocity": tuple(_cells(each) for each in velocity),
-            "temperature": _cells(field.temperature[0]),
-        },
+    ElementTree.ElementTree(_image(field)).write(path, encoding="utf-8", xml_declaration=True)
+
+
+def _image(field: FlowField) -> ElementTree.Element:
+    """VTK's image data in XML, the numbers in base64: OVITO reads no others."""
+    dimensions = len(field.axes)
+    steps = [float(axis[1] - axis[0]) if len(axis) > 1 else 1.0 for axis in field.axes]
+    origin = [float(axis[0]) - step / 2 for axis, step in zip(field.axes, steps, strict=True)]
+    flat = 3 - dimensions
+    extent = _words([end for axis in field.axes for end in (0, len(axis))] + [0, 1] * flat)
+    file = ElementTree.Element(
+        "VTKFile",
+        type="ImageData",
+        version="1.0",
+        byte_order="LittleEndian",
+        header_type="UInt64",
     )
+    image = ElementTree.SubElement(
+        file,
+        "ImageData",
+        WholeExtent=extent,
+        Origin=_words(origin + [0.0] * flat),
+        Spacing=_words(steps + [1.0] * flat),
+    )
+    piece = ElementTree.SubElement(image, "Piece", Extent=extent)
+    cells = ElementTree.SubElement(piece, "CellData", Scalars="count", Vectors="velocity")
+    _add(cells, "count", field.counts[0][..., None])
+    still = np.zeros((*field.counts[0].shape, flat))
+    _add(cells, "velocity", np.concatenate([field.velocity[0], still], axis=-1))
+    _add(cells, "temperature", field.temperature[0][..., None])
+    return file
 
 
-def _cells(values: Array) -> Array:
-    """(nx, ny, nz), in the order that the library wants."""
-    flat = values[..., None] if values.ndim == 2 else values
-    return np.ascontiguousarray(flat)
+def _words(numbers: Sequence[float]) -> str:
+    return " ".join(map(repr, numbers))
 
 
-def _step(axis: Array) -> float:
-    return float(axis[1] - axis[0]) if len(axis) > 1 else 1.0
-
-
-def _three(values: list[float], third: float) -> tuple[float, ...]:
-    return (*values, third)[:3]
+def _add(cells: ElementTree.Element, name: str, values: Array) -> None:
+    """Values of each bin, (nx, ny, ..., components), written with x the fastest."""
+    axes = values.ndim - 1
+    ordered = np.ascontiguousarray(values.transpose(*reversed(range(axes)), axes), dtype="<f8")
+    content = ordered.tobytes()
+    array = ElementTree.SubElement(
+        cells,
+        "DataArray",
+        Name=name,
+        type="Float64",
+        NumberOfComponents=str(values.shape[-1]),
+        format="binary",
+    )
+    length = len(content).to_bytes(8, "little")
+    array.text = base64.b64encode(length + content).decode()

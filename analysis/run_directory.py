@@ -14,6 +14,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from analysis.arrays import Array
+from analysis.flow_grid import FlowField, flow_columns
 from analysis.particle_trajectory import ParticleTrajectory
 from run_files import RunDirectoryError
 from run_files.manifest import Box, Clock, Output, Solvent, Species, read_manifest
@@ -39,8 +40,12 @@ class Table:
     columns: Mapping[str, Array]
 
     def __getitem__(self, name: str) -> Array:
-        """The column of that name, (K,)."""
-        return self.columns[name]
+        """The column of that name, (K,).
+
+        Raises:
+            KeyError: naming those that there are.
+        """
+        return _column(self.columns, name)
 
 
 @dataclass(frozen=True)
@@ -58,8 +63,18 @@ class Bins:
     columns: Mapping[str, Array]
 
     def __getitem__(self, name: str) -> Array:
-        """The column of that name, (K, bins)."""
-        return self.columns[name]
+        """The column of that name, (K, bins).
+
+        Raises:
+            KeyError: naming those that there are.
+        """
+        return _column(self.columns, name)
+
+
+def _column(columns: Mapping[str, Array], name: str) -> Array:
+    if name not in columns:
+        raise KeyError(f"{name}: there is {', '.join(columns)}")
+    return columns[name]
 
 
 @dataclass(frozen=True)
@@ -77,45 +92,6 @@ class Profile:
     y: Array
     counts: Array
     velocity_x: Array
-
-
-@dataclass(frozen=True)
-class FlowField:
-    """The fluid on a grid, each an average over the time up to its step.
-
-    Attributes:
-        steps: last engine step of each average, (K,).
-        axes: middles of the bins along each axis; about a particle, distances from it along
-            periodic axes [a0].
-        counts: particles in each bin, (K, nx, ny) or (K, nx, ny, nz).
-        velocity: their mean velocity in the laboratory, (K, nx, ny, ..., d) [a0/t0].
-        temperature: mean square velocity per dimension, the flow left in, (K, nx, ny, ...) [kBT].
-    """
-
-    steps: Steps
-    axes: tuple[Array, ...]
-    counts: Array
-    velocity: Array
-    temperature: Array
-
-    def mean(self, used: NDArray[np.bool_] | None = None) -> "FlowField":
-        """The average of those averages, every particle with the same weight; K is then 1.
-
-        Args:
-            used: which of them, (K,); default: all.
-        """
-        chosen = np.full(len(self.steps), True) if used is None else used
-        counts = self.counts[chosen]
-        total = np.maximum(counts.sum(axis=0), 1e-300)
-        velocity = (counts[..., None] * self.velocity[chosen]).sum(axis=0) / total[..., None]
-        temperature = (counts * self.temperature[chosen]).sum(axis=0) / total
-        return FlowField(
-            self.steps[chosen][-1:],
-            self.axes,
-            counts.mean(axis=0)[None],
-            velocity[None],
-            temperature[None],
-        )
 
 
 @dataclass(frozen=True)
@@ -315,7 +291,11 @@ class RunDirectory:
         for output in self.manifest.system.outputs:
             if output.file.partition(".")[0] == name and output.kind == kind:
                 return output
-        raise RunDirectoryError(f"{self.path / 'manifest.json'}: no {kind} {name} among outputs")
+        kept = ", ".join(output.file for output in self.manifest.system.outputs)
+        hint = ""
+        if kind == "trajectory":
+            hint = ": it has no particles, or did not keep them (a fluid is seen by flow_interval)"
+        raise RunDirectoryError(f"{self.path}: no {kind} among its outputs {kept}{hint}")
 
     def table(self, name: str = "observables") -> Table:
         """An output of kind `table`, by the name of its file.
@@ -383,9 +363,7 @@ class RunDirectory:
         if grid is None:
             raise RunDirectoryError(f"{self.path}: no flow field was asked for (flow_interval)")
         file = self._output(name, "flow").file
-        axes = len(grid.bins)
-        wanted = [f"Coord{axis + 1}" for axis in range(axes)]
-        wanted += ["Ncount", *(f"v{axis}" for axis in "xyz"[:axes]), "temp"]
+        wanted = flow_columns(len(grid.bins))
         columns, count, numbers = self._read_table(file, "Chunk Coord1", wanted)
         bins = math.prod(grid.bins)
         rows = self._reshape(file, numbers, 3 + bins * count)
@@ -396,17 +374,8 @@ class RunDirectory:
         if np.any(rows[:, 0] != expected):
             wrong = int(np.flatnonzero(rows[:, 0] != expected)[0])
             refuse(self.path / file, f"step {expected[wrong]} expected, {rows[wrong, 0]:g} found")
-        table = rows[:, 3:].reshape(len(rows), *grid.bins, count)[..., columns]
-        places = [
-            np.moveaxis(table[0, ..., a], a, 0).reshape(grid.bins[a], -1) for a in range(axes)
-        ]
-        return FlowField(
-            expected,
-            tuple(place[:, 0] for place in places),
-            table[..., axes],
-            table[..., axes + 1 : 2 * axes + 1],
-            table[..., -1],
-        )
+        table = rows[:, 3:].reshape(len(rows), bins, count)[..., columns]
+        return FlowField.of_table(expected, table, grid.bins)
 
     def flow_used(self, field: FlowField) -> NDArray[np.bool_]:
         """Which averages of a flow field lie after the equilibration, (K,).

@@ -26,7 +26,7 @@ def draw(table: SweepTable) -> Figure | None:
     panels = figure.subplots(down, ACROSS, squeeze=False).flat
     others = [name for name in table.fields if name != field]
     groups = list(dict.fromkeys(tuple(row[name] for name in others) for row in table.rows))
-    for axes, quantity in zip(panels, quantities, strict=False):
+    for quantity, axes in zip(quantities, panels, strict=False):  # takes no panel too many
         for group in groups:
             rows = [
                 row

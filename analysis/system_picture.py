@@ -40,18 +40,24 @@ def frame_at(run: RunDirectory, time: float | None) -> int:
     return frame
 
 
-def draw(run: RunDirectory, frame: int = -1) -> Figure:
+def draw(run: RunDirectory, frame: int = -1, colours: Array | None = None) -> Figure:
     """The particles of a frame as circles of their radii.
 
     Several species have a colour each; of a single one the head of the chain is dark, the tail
     light, by their order at the start.
+
+    Args:
+        run: with particles.
+        frame: its number.
+        colours: of the particles, (N, 4), in place of those.
 
     Raises:
         RunDirectoryError: when there are no particles, or the trajectory cannot be read.
     """
     particles = run.particles()
     positions = wrapped(particles.positions[frame], run.box.sizes)
-    colours = _colours(run, particles.positions[0, :, 0], particles.species)
+    if colours is None:
+        colours = _colours(run, particles.positions[0, :, 0], particles.species)
     radii = np.array([run.species(name).radius or POINT for name in particles.species])
     picture = _flat if run.box.dimensions == 2 else _solid
     figure = picture(run, positions, radii, colours)

@@ -176,6 +176,8 @@ class Scene(BaseModel, ABC):
             if item["type"] == "extra_forbidden":
                 known = ", ".join(cls.model_fields)
                 yield f"{given}: unknown field; {cls.name} has {known}"
+            elif item["type"] == "tuple_type":
+                yield f"{given}: must be a list, such as [0.1, 1]"
             else:
                 reason = item["msg"].removeprefix("Value error, ").removeprefix("Input ")
                 yield f"{given}: {reason}"

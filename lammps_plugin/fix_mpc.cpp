@@ -45,6 +45,7 @@ FixMPC<D>::FixMPC(LAMMPS *lmp, int narg, char **arg) :
   if (!given_.profile_file.empty())
     profile_ = std::make_unique<MpcProfile>(lmp, given_.profile_file, given_.profile_append, id);
   if (given_.flow.every) flow_ = std::make_unique<MpcFlow<D>>(lmp, given_.flow, processes_, id);
+  if (given_.dump.every) dump_ = std::make_unique<MpcDump<D>>(lmp, given_.dump);
 }
 
 template <int D> int FixMPC<D>::setmask()
@@ -226,6 +227,8 @@ template <int D> void FixMPC<D>::setup(int)
 {
   if (restored_ && coupling() && !couples_every_step()) colloids_.repeat_forces();
   restored_ = false;
+  if (dump_ && !begun_ && !given_.dump.append) dump();
+  begun_ = true;
 }
 
 template <int D> void FixMPC<D>::initial_integrate(int)
@@ -271,6 +274,15 @@ template <int D> void FixMPC<D>::end_of_step()
     }
     if (step % given_.flow.frequency == 0) flow_->write(solver_->particles());
   }
+  if (dump_) dump();
+}
+
+// A frame of the fluid, at the steps that have one.
+template <int D> void FixMPC<D>::dump()
+{
+  if (open_ || update->ntimestep % given_.dump.every) return;
+  solver_->turn();
+  dump_->write(solver_->fluid());
 }
 
 // Take the total momentum from all velocities alike.

@@ -9,6 +9,7 @@
 #include "core/solver.h"
 #include "mpc_arguments.h"
 #include "mpc_colloids.h"
+#include "mpc_dump.h"
 #include "mpc_flow.h"
 #include "mpc_profile.h"
 #include "mpc_state.h"
@@ -50,6 +51,7 @@ template <int D> class FixMPC : public Fix {
   bool couples_every_step() { return coupling() && coupling()->every_step(); }
   void check_processes();
   void remove_momentum();
+  void dump();
   void add_forces(bool moving);
   template <class Action> void guarded(const Action &);
   const std::vector<mpc::Layer> &layers();
@@ -59,12 +61,14 @@ template <int D> class FixMPC : public Fix {
   MpcColloids<D> colloids_;
   std::unique_ptr<MpcProfile> profile_;    // or none
   std::unique_ptr<MpcFlow<D>> flow_;       // or none
+  std::unique_ptr<MpcDump<D>> dump_;       // or none
   std::unique_ptr<mpc::Solver<D>> solver_;
   std::unique_ptr<MpcState<D>> state_;
   double interval_ = 0;
   bool open_ = false;        // within an interval
   bool restored_ = false;    // from a restart, not yet gone on
   bool looked_ = false;      // for what the fluid does not feel
+  bool begun_ = false;       // the dump has its first frame
 
   std::vector<mpc::Layer> layers_;
   bigint layers_step_ = -1;

@@ -179,6 +179,16 @@ MpcArguments<D>::MpcArguments(LAMMPS *lmp, int narg, char **arg)
       }
       flow.append = choice(first + 3 + D, "flow mode", {"file", "append"}) == "append";
       flow.file = arg[first + 4 + D];
+    } else if (keyword == "dump") {
+      const int first = values(4);
+      dump.every = utils::inumeric(FLERR, arg[first], false, lmp);
+      if (dump.every < 1 || dump.every % every)
+        error->all(FLERR, "fix mpc: dump Nevery {}: must be a multiple of N", arg[first]);
+      dump.one_in = utils::bnumeric(FLERR, arg[first + 1], false, lmp);
+      if (dump.one_in < 1)
+        error->all(FLERR, "fix mpc: dump M {}: must be positive", arg[first + 1]);
+      dump.append = choice(first + 2, "dump mode", {"file", "append"}) == "append";
+      dump.file = arg[first + 3];
     } else {
       error->all(FLERR, "fix mpc: unknown keyword {}", keyword);
     }

@@ -5,6 +5,7 @@
 #include "core/force_coupling.h"
 #include "core/no_slip_walls.h"
 #include "core/reflection_coupling.h"
+#include "mpc_dump.h"
 #include "mpc_flow.h"
 
 #include <cstdint>
@@ -44,6 +45,7 @@ template <int D> struct MpcArguments {
   std::string profile_file;
   bool profile_append = false;
   FlowArguments<D> flow;
+  DumpArguments dump;
 };
 
 }    // namespace LAMMPS_NS

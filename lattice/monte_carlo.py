@@ -20,11 +20,15 @@ from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
-from numba import njit
 from numpy.typing import NDArray
 
 from lattice.generator import require_memory, require_time
 from lattice.models import LatticeGas, RateError, Vector
+
+try:
+    from numba import njit
+except ImportError:
+    raise ImportError("kinetic Monte Carlo needs numba: pip install 'narrows[lattice]'") from None
 
 _SLOTS = 16  # columns of an alias table, a power of two not below the 9 pair states
 _U = np.uint64

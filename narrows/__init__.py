@@ -13,7 +13,8 @@
 | `analyze` | the numbers of a run directory, with errors |
 | `RunDirectory` | its arrays, and the MDAnalysis Universe |
 | `sweep`, `table` | many runs on all cores, and their numbers by point |
-| `read_fluid` | a fluid that fix mpc saved |
+| `draw_flow` | stream lines of a flow field, on axes of yours |
+| `read_fluid`, `read_flow` | a fluid, and a flow field, that fix mpc left of a deck of yours |
 
 Each is loaded when it is first asked for.
 """
@@ -25,6 +26,8 @@ from typing import TYPE_CHECKING, Any
 
 if TYPE_CHECKING:
     from analysis import RunDirectory, analyze
+    from analysis.flow_grid import read_flow
+    from analysis.measures.flow_field import draw_flow
     from narrows.scripting import make_scene, sweep, table
     from narrows.until import run_until
     from run_files.fluid_file import read_fluid
@@ -34,7 +37,9 @@ __all__ = [
     "RunDirectory",
     "Simulation",
     "analyze",
+    "draw_flow",
     "make_scene",
+    "read_flow",
     "read_fluid",
     "run_until",
     "sweep",
@@ -45,7 +50,9 @@ _MODULES = {
     "RunDirectory": "analysis",
     "Simulation": "srd_driver",
     "analyze": "analysis",
+    "draw_flow": "analysis.measures.flow_field",
     "make_scene": "narrows.scripting",
+    "read_flow": "analysis.flow_grid",
     "read_fluid": "run_files.fluid_file",
     "run_until": "narrows.until",
     "sweep": "narrows.scripting",

@@ -1,6 +1,7 @@
 """Which session runs an engine: LAMMPS for every engine that writes decks, else one of its own."""
 
 import importlib
+from importlib.util import find_spec
 from pathlib import Path
 from typing import Any
 
@@ -16,6 +17,7 @@ SESSIONS = {
     "reference": "srd_driver.reference_session:ReferenceSession",
     "events": "srd_driver.events_session:EventsSession",
 }
+LIBRARIES = {"events": "numba"}  # that come with the extra of the engine's name
 
 
 def require_engine(scene: Scene, engine: str, processes: int = 1) -> None:
@@ -30,6 +32,9 @@ def require_engine(scene: Scene, engine: str, processes: int = 1) -> None:
             f"the {engine} engine runs on one process; use the default engine with mpirun"
         )
     check_engine(scene, engine)
+    library = LIBRARIES.get(engine)
+    if library and not find_spec(library):
+        raise RunError(f"engine {engine} needs {library}: pip install 'narrows[{engine}]'")
     if problems := list(time_problems(scene.system.work, processes)):
         raise SceneError(problems)
     if engine_named(engine).needs_plugin(scene.system) and not lammps_plugin.folder():

@@ -58,7 +58,8 @@ def take(directory: Path, resume: bool) -> TextIO:
 def _require_empty(directory: Path) -> None:
     if any(path.name != run_lock.LOCK for path in directory.iterdir()):
         raise RunError(
-            f"{directory} is not empty: go on with its run by --resume, or choose another"
+            f"{directory} is not empty: go on with its run by --resume (in Python resume=True), or "
+            "choose another"
         )
 
 

@@ -101,6 +101,15 @@ TABLES = [
 ]
 
 
+@pytest.mark.parametrize("results", RESULTS, ids=lambda path: path.stem)
+def test_all_numbers_are_in_a_csv_that_its_page_links(results: Path, tmp_path: Path) -> None:
+    renew_table(str(results), str(tmp_path / "all.csv"))
+    kept = results.with_suffix(".csv")
+    assert (tmp_path / "all.csv").read_text() == kept.read_text()
+    page = (ROOT / "docs" / "reproduce.md").read_text(encoding="utf-8")
+    assert f"](results/{kept.name})" in page
+
+
 @pytest.mark.parametrize(("results", "page", "name"), TABLES)
 def test_tables_of_papers_are_those_of_the_results_kept(
     results: str, page: str, name: str, tmp_path: Path

@@ -1,6 +1,7 @@
 """Clusters of colloids, and how they grow."""
 
 import numpy as np
+from matplotlib import colormaps
 from matplotlib.figure import Figure
 from numpy.typing import NDArray
 
@@ -11,10 +12,12 @@ from analysis.drawing import TIME, mark_equilibration, one_panel
 from analysis.findings import Findings
 from analysis.measures.settling_speed import sampled_frames
 from analysis.run_directory import RunDirectory
+from analysis.system_picture import draw as draw_system
 
 QUANTITIES = ("clusters.largest", "clusters.number", "clusters.bonds_per_colloid", "clusters.alone")
 
 FRAMES = 400  # looked at, evenly spaced
+ALONE = (0.85, 0.85, 0.85, 1.0)  # colour
 
 
 def measure(run: RunDirectory) -> Findings:
@@ -34,7 +37,7 @@ def measure(run: RunDirectory) -> Findings:
     label, _ = labels(particles.positions[-1], box.sizes, box.periodic, distance)
     pictures = {
         "clusters.png": draw(times, series, run.equilibration_time),
-        "suspension.png": draw_suspension(particles.positions[-1], label, box.sizes),
+        "suspension.png": draw_system(run, colours=colours_of(label)),
     }
     return Findings({"clusters": entry}, pictures)
 
@@ -50,14 +53,11 @@ def draw(times: Array, series: ClusterSeries, equilibration: float) -> Figure:
     return figure
 
 
-def draw_suspension(positions: Array, label: NDArray[np.int64], sizes: tuple[float, ...]) -> Figure:
-    """The last frame, clusters by colour, colloids alone in grey."""
-    figure = Figure(figsize=(6, 6), layout="constrained")
-    axes = figure.add_subplot(projection="3d")
-    sizes_of = np.bincount(label)
-    colours = [f"C{each % 10}" if sizes_of[each] > 1 else "0.7" for each in label.tolist()]
-    x, y, z = (positions % list(sizes)).T
-    axes.scatter(x, y, z, c=colours, s=40, depthshade=True)
-    for name in "xyz":
-        getattr(axes, f"set_{name}label")(f"${name}$ [$a_0$]")
-    return figure
+def colours_of(label: NDArray[np.int64]) -> Array:
+    """Colours of colloids by their clusters, the largest first; colloids alone grey: (N, 4)."""
+    sizes = np.bincount(label)
+    rank = np.empty(len(sizes), dtype=np.int64)
+    rank[np.argsort(-sizes, kind="stable")] = np.arange(len(sizes))
+    colours = np.asarray(colormaps["tab20"](rank[label] % 20), dtype=float)
+    colours[sizes[label] == 1] = ALONE
+    return colours

@@ -1,12 +1,15 @@
 """The flow of the fluid on a grid: stream lines over its speed."""
 
 import numpy as np
+from matplotlib.axes import Axes
+from matplotlib.collections import QuadMesh
 from matplotlib.figure import Figure
 from matplotlib.patches import Circle
 
 from analysis.arrays import Array
 from analysis.findings import Findings
-from analysis.run_directory import FlowField, RunDirectory
+from analysis.flow_grid import FlowField
+from analysis.run_directory import RunDirectory
 from run_files import RunDirectoryError
 
 EMPTY = 0.2  # of the usual number of particles: bins in a colloid
@@ -36,26 +39,41 @@ def draw(field: FlowField, radius: float = 0.0) -> Figure:
         radius: of the colloid in the middle; 0 for none [a0].
     """
     x, y = field.axes[:2]
+    width = 10.0
+    figure = Figure(figsize=(width, _height(x, y, width)), layout="constrained")
+    mesh = draw_flow(figure.subplots(), field, radius)
+    figure.colorbar(mesh, label="speed of the fluid [$a_0/t_0$]", shrink=0.8)
+    return figure
+
+
+def draw_flow(
+    axes: Axes, field: FlowField, radius: float = 0.0, fastest: float | None = None
+) -> QuadMesh:
+    """Stream lines over the speed, on axes of your own; what is returned, a colour bar may take.
+
+    Args:
+        field: of one average; in 3D its middle plane is drawn.
+        radius: of the colloid in the middle; 0 for none [a0].
+        fastest: speed of the brightest colour; default: that of the fastest hundredth [a0/t0].
+    """
+    x, y = field.axes[:2]
     velocity, counts = field.velocity[0], field.counts[0]
-    if velocity.ndim == 4:  # the middle plane
+    if velocity.ndim == 4:
         middle = velocity.shape[2] // 2
         velocity, counts = velocity[:, :, middle], counts[:, :, middle]
     inside = counts < EMPTY * np.median(counts)
     vx, vy = (np.ma.masked_where(inside, velocity[..., axis]).T for axis in (0, 1))
-    width = 10.0
-    figure = Figure(figsize=(width, _height(x, y, width)), layout="constrained")
-    axes = figure.subplots()
-    edges = [_edges(x), _edges(y)]
     speed = np.ma.hypot(vx, vy)
-    most = float(np.quantile(speed.compressed(), BRIGHTEST)) if speed.count() else 1.0
-    mesh = axes.pcolormesh(*edges, speed, vmin=0, vmax=most, cmap="viridis", rasterized=True)
+    if fastest is None:
+        fastest = float(np.quantile(speed.compressed(), BRIGHTEST)) if speed.count() else 1.0
+    edges = [_edges(x), _edges(y)]
+    mesh = axes.pcolormesh(*edges, speed, vmin=0, vmax=fastest, cmap="viridis", rasterized=True)
     axes.streamplot(x, y, vx, vy, color="white", linewidth=0.6, arrowsize=0.7, density=1.5)
     if radius:
         place = float(np.average(y, weights=inside.sum(axis=0) + 1e-9)) if inside.any() else 0.0
         axes.add_patch(Circle((0, place), radius, facecolor="0.8", edgecolor="black"))
     axes.set(xlabel="$x$ [$a_0$]", ylabel="$y$ [$a_0$]", aspect="equal")
-    figure.colorbar(mesh, label="speed of the fluid [$a_0/t_0$]", shrink=0.8)
-    return figure
+    return mesh
 
 
 def _edges(middles: Array) -> Array:

@@ -45,7 +45,7 @@ def _refusing(command: Callable[..., None]) -> Callable[..., None]:
     def refusing(*arguments: Any, **options: Any) -> None:
         try:
             command(*arguments, **options)
-        except (ValueError, ArithmeticError, OSError) as error:
+        except (ValueError, ArithmeticError, OSError, ImportError) as error:
             _refuse(error)
 
     return refusing

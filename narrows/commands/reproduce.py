@@ -44,6 +44,9 @@ def reproduce(
         chosen = select(asked, figures or [])
     except ValueError as error:
         raise typer.BadParameter(str(error)) from None
+    except ImportError as error:  # of what the smallest installation leaves out
+        complain(str(error))
+        raise typer.Exit(2) from None
     with user_errors():
         began = clock.perf_counter()
         plan = Plan(asked, chosen, "quick" if quick else "full", out)

@@ -29,6 +29,7 @@ class Report:
 
     Attributes:
         left_out: one line for each figure that could not be made.
+        system: a picture of one of the systems, and what it shows.
         runs: distinct runs behind the figures.
         engines: of the runs.
         run_seconds: core time of all runs, earlier commands included [s].
@@ -41,6 +42,7 @@ class Report:
     quality: Quality
     made: Sequence[Made]
     left_out: Sequence[str]
+    system: tuple[Path, str] | None
     runs: int
     engines: Sequence[str]
     run_seconds: float
@@ -87,10 +89,19 @@ errors plus one unit of the last printed digit. A claim without a number is put 
 zero: it holds, or fails, at two standard errors, and is open where these do not decide. Errors are
 one standard error.</p>
 {failed}</section>
-{sections}
+{_system(report)}{sections}
 <section><h2>How it was made</h2>{_making(report)}
 <p>The paper: {escape(cite)}.</p></section>"""
     return html.page(f"{report.paper.name}, {report.quality}", body)
+
+
+def _system(report: Report) -> str:
+    if report.system is None:
+        return ""
+    picture, says = report.system
+    return f"""<section id="system"><h2>A system of these figures</h2>
+{html.picture(picture, says, says)}</section>
+"""
 
 
 def _verdicts(report: Report) -> str:

@@ -14,7 +14,7 @@ from pathlib import Path
 
 import matplotlib
 
-from analysis import RunDirectory, RunDirectoryError
+from analysis import RunDirectory, RunDirectoryError, system_picture
 from lammps_inputs import Scene
 from lammps_inputs.engines import default_engine
 from narrows.papers.drawing import STYLE
@@ -22,6 +22,9 @@ from narrows.papers.figure import Outcome, Paper, PaperFigure, Quality
 from narrows.papers.page import Made, Report, write_page
 from narrows.papers.results import Result, write_results
 from srd_driver.sweep import Advance, Run, is_finished, run_all
+
+LONGEST_DRAWN = 64.0  # length of a box over its width, that a page can show
+MOST_DRAWN = 5000  # particles
 
 
 def select(paper: Paper, numbers: Sequence[str]) -> list[PaperFigure]:
@@ -100,6 +103,30 @@ class Done:
     left_out: list[str]
 
 
+def draw_system(directories: Mapping[Scene, RunDirectory], path: Path) -> tuple[Path, str] | None:
+    """A picture of the largest system among the runs that fits a page, and what it shows.
+
+    None where no run has kept its particles.
+    """
+
+    def fits(scene: Scene) -> bool:
+        system = scene.system
+        kept = any(output.kind == "trajectory" for output in system.outputs)
+        flat = system.box.sizes[0] <= LONGEST_DRAWN * system.box.sizes[1]
+        return kept and flat and 0 < system.particles <= MOST_DRAWN
+
+    chosen = max(filter(fits, directories), key=lambda scene: scene.system.particles, default=None)
+    if chosen is None:
+        return None
+    run = directories[chosen]
+    system_picture.draw(run).savefig(path, dpi=120)
+    sizes = " x ".join(f"{size:g}" for size in run.box.sizes)
+    return path, (
+        f"scene {chosen.name}, particles: {chosen.system.particles}, box {sizes}; at the "
+        f"end of a run: runs/{run.path.name}."
+    )
+
+
 def carry_out(plan: Plan, jobs: int, report: Callable[[Advance], None] | None = None) -> Done:
     """Run what is not finished, make every figure whose runs are there, write all files.
 
@@ -139,6 +166,7 @@ def carry_out(plan: Plan, jobs: int, report: Callable[[Advance], None] | None = 
             plan.quality,
             made,
             left_out,
+            system=draw_system(directories, plan.out / "system.png"),
             runs=len(plan.runs),
             engines=sorted({run.engine for run in plan.runs}),
             run_seconds=sum(run.wall_seconds() or 0.0 for run in directories.values()),

@@ -2,10 +2,12 @@
 
     python -m narrows.papers.table RESULTS PAGE PAPER     # what is held against the paper
     python -m narrows.papers.table RESULTS PAGE FIGURE    # all numbers of a figure
+    python -m narrows.papers.table RESULTS FILE.csv       # all numbers of all figures
 
 The page has the marks of the paper or of the figure.
 """
 
+import csv
 import sys
 from pathlib import Path
 from typing import Any
@@ -42,8 +44,20 @@ def figure_table(entries: list[dict[str, Any]]) -> str:
     return table(COLUMNS[1:], rows)
 
 
-def main(results: str, page: str, name: str) -> None:
-    """Renew the table of the page."""
+def write_csv(results: Path, file: Path) -> None:
+    """All numbers as a table for other programs, empty where a result has none."""
+    entries = read_json_list(results)
+    with file.open("w", newline="", encoding="utf-8") as opened:
+        writer = csv.DictWriter(opened, list(entries[0]), lineterminator="\n")
+        writer.writeheader()
+        writer.writerows(entries)
+
+
+def main(results: str, page: str, name: str = "") -> None:
+    """Renew the table of the page, or write the file of all numbers."""
+    if page.endswith(".csv"):
+        write_csv(Path(results), Path(page))
+        return
     entries = read_json_list(Path(results))
     of_figure = [entry for entry in entries if entry["figure"] == name]
     text = figure_table(of_figure) if of_figure else compared_table(entries)

@@ -8,6 +8,7 @@ import numpy as np
 import pytest
 from numpy.typing import NDArray
 
+from analysis.flow_grid import read_flow
 from lammps_inputs.viscosity import viscosity
 from run_files.fluid_file import read_fluid
 from tests.conftest import ROOT, Run
@@ -172,3 +173,26 @@ def test_a_fluid_that_nobody_reads_is_warned_of(tmp_path: Path, command: Run) ->
         said = command("lmp", "-in", "in.b", cwd=tmp_path).stdout
         remedy = "ID fluid: the restart file holds the fluid of ID water, which is not read"
         assert (remedy in said) == warned
+
+
+def test_the_sphere_for_ovito_and_the_python_of_its_page(
+    tmp_path: Path,
+    command: Run,
+    monkeypatch: pytest.MonkeyPatch,
+    capsys: pytest.CaptureFixture[str],
+) -> None:
+    """Shorter; sphere and fluid at the same steps, the fluid ahead of the sphere flows along."""
+    run_deck("in.ovito", tmp_path, command, "steps=10000", "average=5000")
+    sphere, fluid = (frames(tmp_path / f"{name}.lammpsdump") for name in ("sphere", "fluid"))
+    assert list(sphere) == list(fluid) == list(range(0, 10001, 500))
+    assert {len(rows) for rows in fluid.values()} == {3056}
+    flow = read_flow(tmp_path / "flow.dat").mean()
+    x, y, z = np.meshgrid(*flow.axes, indexing="ij")
+    from_middle = np.sqrt(x**2 + y**2 + z**2)
+    assert flow.counts[0][from_middle < 1].max() < 0.5
+    page = (ROOT / "docs" / "ovito.md").read_text(encoding="utf-8")
+    (block,) = re.findall(r"^```python\n(.*?)^```$", page, re.MULTILINE | re.DOTALL)
+    monkeypatch.chdir(tmp_path)
+    exec(compile(block, "ovito.md", "exec"), {})
+    assert "mean velocity" in capsys.readouterr().out
+    assert (tmp_path / "flow.png").is_file()

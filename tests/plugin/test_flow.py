@@ -1,13 +1,15 @@
 """The flow field of fix mpc: what numpy makes of the saved fluid, on any number of processes."""
 
+import base64
 from pathlib import Path
+from xml.etree import ElementTree
 
 import numpy as np
 import pytest
 from numpy.typing import NDArray
 
-from analysis import RunDirectory
-from analysis.run_directory import FlowField
+from analysis import RunDirectory, RunDirectoryError
+from analysis.flow_grid import FlowField, read_flow
 from lammps_inputs import Scene, SceneError, make_scene
 from lammps_inputs.deck import check_engine
 from lammps_inputs.engines.engine import Start
@@ -113,6 +115,52 @@ def test_in_three_dimensions(tmp_path: Path, command: Run) -> None:
     np.testing.assert_allclose(field.axes[2], [1, 3])
 
 
+def numbers(array: ElementTree.Element) -> NDArray[np.float64]:
+    """What a DataArray of a .vti file holds: its length in bytes, then the numbers."""
+    assert array.text
+    content = base64.b64decode(array.text)
+    assert int.from_bytes(content[:8], "little") == len(content) - 8
+    return np.frombuffer(content[8:], dtype="<f8")
+
+
+def test_the_flow_of_a_deck_of_ones_own_is_read_and_exported(tmp_path: Path, command: Run) -> None:
+    """As that of a run directory is: it is the same file."""
+    scene = channel(1, duration=0.24)
+    run_mpc(scene, 2 * COLLISIONS, tmp_path / "run", command)
+    whole = field_of(scene, tmp_path / "run")
+    alone = tmp_path / "alone.dat"
+    alone.write_bytes((tmp_path / "run" / "flow.dat").read_bytes() + b"480 98 9\n 1 -9.75 0.7")
+    field = read_flow(alone)
+    for name in ("steps", "counts", "velocity", "temperature"):
+        np.testing.assert_array_equal(getattr(field, name), getattr(whole, name))
+    np.testing.assert_array_equal(field.axes[1], whole.axes[1])
+    command("narrows", "export", alone, tmp_path / "a.vti", "--skip", "1")
+    image = ElementTree.parse(tmp_path / "a.vti").getroot()[0]
+    np.testing.assert_array_equal(numbers(image[0][0][0]), whole.counts[1].ravel(order="F"))
+    refused = command("narrows", "export", alone, tmp_path / "a.vti", "--skip", "2", succeed=False)
+    assert "skip = 2: " in refused.stderr
+    assert "has 2 averages" in refused.stderr
+
+
+@pytest.mark.parametrize(
+    ("text", "message"),
+    [
+        ("", "not a flow field of fix mpc"),
+        ("# Chunk Coord1 Ncount density/number vx temp\n", "not a flow field of fix mpc"),
+        ("{head}", "no complete average yet"),
+        ("{head}8 2 9\n 1 0 0 1 1 0 0 1\n", "no complete average yet"),
+        ("{head}8 1 9\n 1 0 0 1 1 x 0 1\n", "holds text among numbers"),
+        ("{head}8 1 9\n 1 0 0 1 1 nan 0 1\n", "its bins are no grid"),
+        ("{head}8 3 9\n 1 0 0 1 1 0 0 1\n 2 0 1 1 1 0 0 1\n 3 1 0 1 1 0 0 1\n", "no grid"),
+    ],
+)
+def test_what_is_no_flow_is_refused(text: str, message: str, tmp_path: Path) -> None:
+    file = tmp_path / "flow.dat"
+    file.write_text(text.format(head="# Chunk Coord1 Coord2 Ncount density/number vx vy temp\n"))
+    with pytest.raises(RunDirectoryError, match=message):
+        read_flow(file)
+
+
 def test_it_is_drawn_and_exported(tmp_path: Path, command: Run) -> None:
     run = tmp_path / "run"
     scene = channel(2, duration=0.24)
@@ -126,14 +174,17 @@ def test_it_is_drawn_and_exported(tmp_path: Path, command: Run) -> None:
     np.testing.assert_array_equal(arrays["velocity"], field.velocity)
     np.testing.assert_array_equal(arrays["y"], field.axes[1])
     command("narrows", "export", run, tmp_path / "flow.vti")
-    image = (tmp_path / "flow.vti").read_bytes()
-    assert b'WholeExtent="0 14 0 7 0 1"' in image
-    for name in (b"count", b"velocity", b"temperature"):
-        assert b'Name="' + name + b'"' in image
-    begin = image.index(b"_", image.index(b"<AppendedData")) + 1
-    bytes_of_first = int.from_bytes(image[begin : begin + 8], "little")
-    first = np.frombuffer(image[begin + 8 : begin + 8 + bytes_of_first])
-    np.testing.assert_array_equal(first, field.mean().counts[0].ravel(order="F"))  # x is fastest
+    image = ElementTree.parse(tmp_path / "flow.vti").getroot()[0]
+    assert image.attrib["WholeExtent"] == "0 14 0 7 0 1"
+    assert image.attrib["Spacing"] == "1.5 1.4285 1.0"  # of printed places
+    assert image.attrib["Origin"].split()[::2] == ["-10.5", "0.0"]
+    arrays = {each.attrib["Name"]: numbers(each) for each in image[0][0]}
+    mean = field.mean()
+    np.testing.assert_array_equal(arrays["count"], mean.counts[0].ravel(order="F"))  # x is fastest
+    np.testing.assert_array_equal(arrays["temperature"], mean.temperature[0].ravel(order="F"))
+    velocity = arrays["velocity"].reshape(-1, 3)
+    np.testing.assert_array_equal(velocity[:, 1], mean.velocity[0, ..., 1].ravel(order="F"))
+    assert not velocity[:, 2].any()
     refused = command("narrows", "export", run, tmp_path / "flow.csv", succeed=False)
     assert "must end with .vti or .npz" in refused.stderr
 

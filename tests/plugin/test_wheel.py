@@ -1,4 +1,4 @@
-"""A wheel with two builds of the plugin: LAMMPS gets the one that the processor can run."""
+"""A wheel with builds of the plugin by level: LAMMPS gets the best that the processor runs."""
 
 from pathlib import Path, PurePosixPath
 from typing import Any
@@ -8,7 +8,9 @@ import pytest
 import lammps_plugin
 
 NEW = "processor : 0\nflags : fpu abm avx avx2 bmi1 bmi2 f16c fma movbe sse4_2\n"
+NEWEST = NEW.replace("avx2", "avx2 avx512f avx512bw avx512cd avx512dq avx512vl")
 OLD = "processor : 0\nflags : fpu avx sse4_2\n"
+ALL = ["x86-64-v2", "x86-64-v3", "x86-64-v4"]
 
 
 class Installed(PurePosixPath):
@@ -21,9 +23,12 @@ class Installed(PurePosixPath):
 @pytest.mark.parametrize(
     ("processors", "folders", "chosen"),
     [
-        (NEW, ["x86-64-v2", "x86-64-v3"], "x86-64-v3"),
-        (OLD, ["x86-64-v2", "x86-64-v3"], "x86-64-v2"),
-        (NEW + OLD, ["x86-64-v2", "x86-64-v3"], "x86-64-v2"),
+        (NEWEST, ALL, "x86-64-v4"),
+        (NEW, ALL, "x86-64-v3"),
+        (OLD, ALL, "x86-64-v2"),
+        (NEWEST + NEW, ALL, "x86-64-v3"),
+        (NEW + OLD, ALL, "x86-64-v2"),
+        ("", ALL, "x86-64-v2"),
         (OLD, ["lammps_plugin"], "lammps_plugin"),
         (NEW, [], None),
     ],
@@ -42,7 +47,3 @@ def test_the_processor_decides(
     monkeypatch.setattr(lammps_plugin, "files", lambda name: built)
     monkeypatch.setattr(Path, "read_text", lambda path, encoding: processors)
     assert lammps_plugin.folder() == (str(tmp_path / chosen) if chosen else "")
-
-
-def test_where_no_processor_is_told_of_the_older_build_is_taken() -> None:
-    assert not lammps_plugin.runs_wide("")

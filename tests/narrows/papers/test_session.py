@@ -51,7 +51,9 @@ def test_figures_data_results_and_page(tmp_path: Path) -> None:
     assert (plan.out / "figure-2.pdf").read_bytes().startswith(b"%PDF")
     page = (plan.out / "index.html").read_text()
     sources = re.findall(r'(?:src|href)="([^"]*)"', page)
-    assert len([s for s in sources if s.startswith("data:image/png;base64,")]) == 2
+    assert len([s for s in sources if s.startswith("data:image/png;base64,")]) == 3
+    assert "scene channel, particles: 1, box 20 x 10; at the end of a run" in page
+    assert page.index('id="system"') < page.index('id="figure-1"')
     beside = {source for source in sources if not source.startswith(("data:", "#"))}
     assert beside == {f"figure-{n}.{kind}" for n in (1, 2) for kind in ("csv", "pdf")}
     assert all((plan.out / name).is_file() for name in beside)

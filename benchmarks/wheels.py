@@ -1,0 +1,62 @@
+"""The plugin of two installations, in turn: a wheel for every machine against a build for this one.
+
+    python benchmarks/wheels.py LMP [--pairs 7]
+
+LMP is the `lmp` of the other environment, where narrows is installed from the wheel of
+
+    pip wheel . --no-deps -C cmake.define.NARROWS_NATIVE=OFF
+
+Both run the same decks, one after the other, the order changing from pair to pair. The ratio is of
+the processor time of whole processes, less that of one which takes a single step.
+"""
+
+import argparse
+import os
+import sys
+import tempfile
+from pathlib import Path
+
+import numpy as np
+
+DECKS = {"mpc_channel": 12000, "mpc_bulk2d": 3000, "mpc_bulk3d": 1000}  # steps
+
+
+def processor_seconds(lmp: Path, deck: Path, steps: int) -> float:
+    """User time of a process, by the system's own account [s]."""
+    with tempfile.TemporaryDirectory() as folder, open(os.devnull, "w") as nowhere:
+        words = [str(lmp), "-in", str(deck), "-var", "steps", str(steps), "-log", "none"]
+        files = [(os.POSIX_SPAWN_DUP2, nowhere.fileno(), 1)]
+        home = Path.cwd()
+        os.chdir(folder)
+        try:
+            process = os.posix_spawn(words[0], words, os.environ, file_actions=files)
+        finally:
+            os.chdir(home)
+        _, status, used = os.wait4(process, 0)
+    if status:
+        raise SystemExit(f"{lmp} -in {deck} failed")
+    return used.ru_utime
+
+
+def main() -> None:
+    """Print a row of markdown for each deck."""
+    parser = argparse.ArgumentParser(description=__doc__)
+    parser.add_argument("lmp", type=Path)
+    parser.add_argument("--pairs", type=int, default=7)
+    given = parser.parse_args()
+    mine, other = Path(sys.executable).with_name("lmp"), given.lmp.absolute()
+    print("| deck | the wheel's time over the native build's | quartiles |\n|---|---|---|")
+    for name, steps in DECKS.items():
+        deck = Path(__file__).parent.absolute() / "decks" / f"{name}.lmp"
+        start = {lmp: processor_seconds(lmp, deck, 1) for lmp in (mine, other)}
+        ratios = []
+        for pair in range(given.pairs):
+            order = (mine, other) if pair % 2 else (other, mine)
+            spent = {lmp: processor_seconds(lmp, deck, steps) - start[lmp] for lmp in order}
+            ratios.append(spent[other] / spent[mine])
+        low, middle, high = np.quantile(ratios, [0.25, 0.5, 0.75])
+        print(f"| {name} | {middle:.3f} | {low:.3f} to {high:.3f} |", flush=True)
+
+
+if __name__ == "__main__":
+    main()
