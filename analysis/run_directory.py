@@ -295,7 +295,8 @@ class RunDirectory:
         hint = ""
         if kind == "trajectory":
             hint = ": it has no particles, or did not keep them (a fluid is seen by flow_interval)"
-        raise RunDirectoryError(f"{self.path}: no {kind} among its outputs {kept}{hint}")
+        wanted = kind if name == kind else f"{kind} {name}"
+        raise RunDirectoryError(f"{self.path}: no {wanted} among its outputs {kept}{hint}")
 
     def table(self, name: str = "observables") -> Table:
         """An output of kind `table`, by the name of its file.

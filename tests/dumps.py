@@ -11,5 +11,6 @@ def frames(file: Path) -> dict[int, NDArray[np.float64]]:
     read: dict[int, NDArray[np.float64]] = {}
     for text in file.read_text().split("ITEM: TIMESTEP\n")[1:]:
         step, _, rows = text.partition("\n")
-        read[int(step)] = np.loadtxt(rows.split("iz\n")[1].splitlines(), ndmin=2)
+        values = rows.partition("ITEM: ATOMS ")[2].partition("\n")[2]
+        read[int(step)] = np.loadtxt(values.splitlines(), ndmin=2)
     return read

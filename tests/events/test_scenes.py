@@ -52,7 +52,7 @@ BAD: list[tuple[str, dict[str, Any], str]] = [
     ("pore", {"reaction_probabilities": [0.1, 0]}, r"probabilities.1 = 0: should be greater tha"),
     ("pore", {"reaction_probabilities": [1.1]}, r"probabilities.0 = 1.1: should be less than or"),
     ("pore", {"reaction_probabilities": [0.1, 0.1]}, "one stands there twice"),
-    ("pore", {"reaction_probabilities": 0.1}, "reaction_probabilities = 0.1: should be a valid tu"),
+    ("pore", {"reaction_probabilities": 0.1}, "reaction_probabilities = 0.1: must be a list, such"),
     ("pore", {"sampling_interval": 0.1}, "sampling_interval = 0.1: at least 0.2"),
     ("pore", {"duration": 5}, "duration = 5.0: at least the sampling_interval, 20.0"),
     ("pore", {"equilibration": -1}, "equilibration = -1: should be greater than or equal to 0"),
