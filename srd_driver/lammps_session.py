@@ -92,6 +92,7 @@ class LammpsSession:
         try:
             with self._errors():
                 self.lammps.command(f"fix_modify solvent save {folder / SAVED_FLUID}")
+            self._comm.barrier()  # the first process writes, all read
             return read_fluid(folder / SAVED_FLUID)
         finally:
             self._comm.barrier()
