@@ -66,7 +66,8 @@ template <int D> void MpcDump<D>::write(const mpc::Fluid<D> &fluid)
     for (int a = 0; a < 3; ++a) std::fprintf(file_, " %g", a < D ? particle.v[a] : 0.0);
     std::fputc('\n', file_);
   }
-  std::fflush(file_);
+  if (std::fflush(file_) || std::ferror(file_))
+    error->one(FLERR, "fix mpc: dump: cannot write {}", given_.file);
 }
 
 template class LAMMPS_NS::MpcDump<2>;

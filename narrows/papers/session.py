@@ -106,7 +106,7 @@ class Done:
 def draw_system(directories: Mapping[Scene, RunDirectory], path: Path) -> tuple[Path, str] | None:
     """A picture of the largest system among the runs that fits a page, and what it shows.
 
-    None where no run has kept its particles.
+    None where no run has kept its particles, or that trajectory cannot be read.
     """
 
     def fits(scene: Scene) -> bool:
@@ -119,7 +119,10 @@ def draw_system(directories: Mapping[Scene, RunDirectory], path: Path) -> tuple[
     if chosen is None:
         return None
     run = directories[chosen]
-    system_picture.draw(run).savefig(path, dpi=120)
+    try:
+        system_picture.draw(run).savefig(path, dpi=120)
+    except RunDirectoryError:  # a damaged trajectory is told of by what needs it
+        return None
     sizes = " x ".join(f"{size:g}" for size in run.box.sizes)
     return path, (
         f"scene {chosen.name}, particles: {chosen.system.particles}, box {sizes}; at the "

@@ -86,6 +86,7 @@ def test_it_is_appended_to_after_a_restart(tmp_path: Path, command: Run) -> None
         ("4 0 file f", "dump M 0: must be positive"),
         ("4 1 new f", "dump mode new: must be one of file, append"),
         ("4 1 file no/such/folder", "dump: cannot write no/such/folder"),
+        ("4 1 file /dev/full", "dump: cannot write /dev/full"),
     ],
 )
 def test_what_is_refused(values: str, message: str, tmp_path: Path, command: Run) -> None:

@@ -108,6 +108,22 @@ def test_a_figure_that_cannot_be_made_costs_itself_only(tmp_path: Path) -> None:
     assert done.left_out == ["figure 0 left out: every point needs a positive error"]
 
 
+def test_a_damaged_trajectory_costs_no_page(tmp_path: Path) -> None:
+    """Its figures are left out, each with the reason, and no system is drawn."""
+    plan = plan_of(tmp_path)
+    carry_out(plan, jobs=2)
+    for run in plan.runs:
+        path = run.folder / "trajectory.lammpsdump"
+        path.write_bytes(b"x" + path.read_bytes()[1:])
+    done = carry_out(plan, jobs=2)
+    page = (tmp_path / "index.html").read_text()
+    assert 'id="system"' not in page
+    assert done.results == []
+    assert len(done.left_out) == 2
+    assert all("trajectory.lammpsdump: damaged" in line for line in done.left_out)
+    assert "figure 2 left out" in page
+
+
 def test_goes_on_after_kill_9(tmp_path: Path) -> None:
     words = [sys.executable, "-m", "tests.narrows.papers.tiny", str(tmp_path), "60"]
     process = subprocess.Popen(words, cwd=ROOT, env=os.environ | {"PYTHONPATH": str(ROOT)})
