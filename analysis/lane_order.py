@@ -49,10 +49,13 @@ def lane_order_printed(positions: Array, colours: ArrayLike, lengths: ArrayLike)
 
 
 def lane_order_near(positions: Array, colours: ArrayLike, lengths: ArrayLike) -> Array:
-    """phi with the distance across the field, of pairs that interact: closer than `REACH`.
+    """phi (delhommelle-2005, II) of pairs that interact: closer than `REACH`, which is not printed.
 
-    The paper prints no cutoff. It is 1 for one colour, and about 0.05 for well mixed soft disks at
-    density 1. Arguments as of `lane_order`, in units of sigma.
+    It is 1 for lanes, and not 0 when mixed: about 0.05 for soft disks at density 1. Arguments as of
+    `lane_order`, in units of sigma.
+
+    Raises:
+        ValueError: as `lane_order`, and for a box below twice the reach.
     """
     colours, lengths = _two_colours(colours), np.asarray(lengths, dtype=float)
     dimension = positions.shape[2]

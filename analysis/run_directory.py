@@ -3,8 +3,7 @@
 import math
 import re
 import warnings
-from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
+from collections.abc import Sequence
 from functools import cached_property
 from pathlib import Path
 from typing import Any
@@ -16,99 +15,13 @@ from numpy.typing import NDArray
 from analysis.arrays import Array
 from analysis.flow_grid import FlowField, flow_columns
 from analysis.particle_trajectory import ParticleTrajectory
+from analysis.run_outputs import Bins, Particles, Profile, Steps, Table
 from run_files import RunDirectoryError
 from run_files.manifest import Box, Clock, Output, Solvent, Species, read_manifest
 from run_files.progress import Progress, is_begun, read_progress
 from run_files.reading import read_text, refuse
 
-Steps = NDArray[np.int64]
-
-
 BOX_PRECISION = 1e-5  # MDAnalysis keeps edges in float32
-
-
-@dataclass(frozen=True)
-class Table:
-    """Averages over each sampling interval.
-
-    Attributes:
-        steps: last engine step of each interval, (K,).
-        columns: by name, each (K,).
-    """
-
-    steps: Steps
-    columns: Mapping[str, Array]
-
-    def __getitem__(self, name: str) -> Array:
-        """The column of that name, (K,).
-
-        Raises:
-            KeyError: naming those that there are.
-        """
-        return _column(self.columns, name)
-
-
-@dataclass(frozen=True)
-class Bins:
-    """Averages by bins over each sampling interval.
-
-    Attributes:
-        steps: last engine step of each interval, (K,).
-        positions: bin centres, (bins,).
-        columns: by name, each (K, bins).
-    """
-
-    steps: Steps
-    positions: Array
-    columns: Mapping[str, Array]
-
-    def __getitem__(self, name: str) -> Array:
-        """The column of that name, (K, bins).
-
-        Raises:
-            KeyError: naming those that there are.
-        """
-        return _column(self.columns, name)
-
-
-def _column(columns: Mapping[str, Array], name: str) -> Array:
-    if name not in columns:
-        raise KeyError(f"{name}: there is {', '.join(columns)}")
-    return columns[name]
-
-
-@dataclass(frozen=True)
-class Profile:
-    """The fluid by bins of y, averages over each sampling interval.
-
-    Attributes:
-        steps: last engine step of each interval, (K,).
-        y: bin centres, (bins,) [a0].
-        counts: particles in each bin, (K, bins).
-        velocity_x: their mean velocity along x, (K, bins) [a0/t0].
-    """
-
-    steps: Steps
-    y: Array
-    counts: Array
-    velocity_x: Array
-
-
-@dataclass(frozen=True)
-class Particles:
-    """The particles at every sampled step, the first at step 0.
-
-    Attributes:
-        steps: engine steps, (T,).
-        positions: unwrapped, from the lower corner of the box, (T, N, d) [a0].
-        velocities: (T, N, d) [a0/t0].
-        species: name of the species of each particle, (N,).
-    """
-
-    steps: Steps
-    positions: Array
-    velocities: Array
-    species: NDArray[np.str_]
 
 
 class RunDirectory:
@@ -230,6 +143,11 @@ class RunDirectory:
                 f"{self.equilibration_steps}, the output at step {steps[-1]}"
             )
         return np.asarray(used)
+
+    @property
+    def equilibration_frames(self) -> int:
+        """Frames of the trajectory, the first at step 0, that the equilibration takes."""
+        return math.ceil(self.equilibration_steps / self.clock.sample_steps)
 
     @cached_property
     def progress(self) -> Progress | None:

@@ -58,8 +58,8 @@ def run(folder: Path, seed: int) -> None:
 def fluid_density(file: Path) -> Array:
     """Number density in bins along x over n_f, from a saved fluid."""
     x = read_fluid(file).positions[:, 0] % SCENE.length
-    number, _ = np.histogram(x, round(SCENE.length / BIN), (0, SCENE.length))
-    return np.asarray(number / (BIN * SCENE.width * SCENE.density))
+    counts, _ = np.histogram(x, round(SCENE.length / BIN), (0, SCENE.length))
+    return np.asarray(counts / (BIN * SCENE.width * SCENE.density))
 
 
 def predicted(results: Path) -> Array:

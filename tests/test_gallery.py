@@ -4,6 +4,7 @@ import ast
 import importlib.util
 import re
 import shlex
+import sys
 from pathlib import Path
 from typing import Any
 
@@ -26,8 +27,6 @@ def script() -> Any:
     assert spec
     assert spec.loader
     module = importlib.util.module_from_spec(spec)
-    import sys
-
     sys.modules["gallery"] = module  # which dataclasses look for
     spec.loader.exec_module(module)
     return module

@@ -1,5 +1,7 @@
 """D across walls in the middle, by the mean squared displacement: a check of the profiles."""
 
+from typing import Any
+
 import numpy as np
 
 from analysis.diffusivity import AlongAxis, DiffusivityError, MiddleDiffusivity
@@ -15,13 +17,21 @@ def measure(run: RunDirectory) -> Findings:
     walled = np.flatnonzero(~np.asarray(run.box.periodic))
     if len(walled) == 0:
         return Findings()
-    axis, radius = int(walled[0]), run.species().radius
-    first = -(-run.equilibration_steps // run.clock.sample_steps)
-    coordinate = AlongAxis(run.universe().atoms, "xyz"[axis])
     try:
-        analysis = MiddleDiffusivity(coordinate, radius, run.box.sizes[axis] - radius)
-        found = analysis.run(start=first).results
+        found = displacements(run, int(walled[0]))
     except DiffusivityError as error:
         return Findings({"middle_displacement": Estimate(None, None, str(error)).as_json()})
     entry = Estimate(found.diffusivity, found.error, freedom=found.freedom).as_json()
     return Findings({"middle_displacement": entry | {"window": list(found.window)}})
+
+
+def displacements(run: RunDirectory, axis: int) -> Any:
+    """The results of `MiddleDiffusivity` across the walls of an axis, between which centres move.
+
+    Raises:
+        DiffusivityError: when the run is too short, or its frames too far apart.
+    """
+    radius = run.species().radius
+    coordinate = AlongAxis(run.universe().atoms, "xyz"[axis])
+    analysis = MiddleDiffusivity(coordinate, radius, run.box.sizes[axis] - radius)
+    return analysis.run(start=run.equilibration_frames).results

@@ -16,10 +16,9 @@ def measure(run: RunDirectory) -> Findings:
     if len(walled) == 0:
         return Findings()
     axis = "xyz"[walled[0]]
-    first = -(-run.equilibration_steps // run.clock.sample_steps)
     try:
         found, missing = estimate_all(
-            run.universe().atoms, axis, estimators=ESTIMATORS, start=first
+            run.universe().atoms, axis, estimators=ESTIMATORS, start=run.equilibration_frames
         )
     except DiffusivityError as error:
         return Findings({"path_diffusivity": None}, warnings=(str(error),))

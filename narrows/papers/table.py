@@ -8,12 +8,14 @@ The page has the marks of the paper or of the figure.
 """
 
 import csv
+import io
 import sys
 from pathlib import Path
 from typing import Any
 
 from narrows.markdown import number, replace_block, table
 from run_files.reading import read_json_list
+from run_files.writing import replace_text
 
 COLUMNS = ("figure", "quantity", "here", "paper", "agrees")
 WORDS = {True: "yes", False: "**no**", None: "open"}
@@ -25,32 +27,32 @@ def compared_table(entries: list[dict[str, Any]]) -> str:
     for entry in entries:
         if entry["paper"] is None and entry["claim"] is None:
             continue
-        paper = entry["claim"] if entry["paper"] is None else f"{entry['paper']:.4g}"
-        here = number(entry["value"], entry["error"])
-        rows.append((entry["figure"], entry["quantity"], here, paper, WORDS[entry["agrees"]]))
+        rows.append((entry["figure"], *_row(entry)))
     return table(COLUMNS, rows)
 
 
 def figure_table(entries: list[dict[str, Any]]) -> str:
     """All numbers of a figure, with what the paper has of them."""
-    rows = []
-    for entry in entries:
-        paper = entry["claim"] or ""
-        if entry["paper"] is not None:
-            paper = f"{entry['paper']:.4g}"
-        here = number(entry["value"], entry["error"])
-        verdict = WORDS[entry["agrees"]] if paper else ""
-        rows.append((entry["quantity"], here, paper, verdict))
-    return table(COLUMNS[1:], rows)
+    return table(COLUMNS[1:], map(_row, entries))
+
+
+def _row(entry: dict[str, Any]) -> tuple[str, str, str, str]:
+    """Quantity, our number, the paper's number or claim, and whether they agree."""
+    paper = entry["claim"] or ""
+    if entry["paper"] is not None:
+        paper = f"{entry['paper']:.4g}"
+    here = number(entry["value"], entry["error"])
+    return entry["quantity"], here, paper, WORDS[entry["agrees"]] if paper else ""
 
 
 def write_csv(results: Path, file: Path) -> None:
     """All numbers as a table for other programs, empty where a result has none."""
     entries = read_json_list(results)
-    with file.open("w", newline="", encoding="utf-8") as opened:
-        writer = csv.DictWriter(opened, list(entries[0]), lineterminator="\n")
-        writer.writeheader()
-        writer.writerows(entries)
+    text = io.StringIO()
+    writer = csv.DictWriter(text, list(entries[0]) if entries else [], lineterminator="\n")
+    writer.writeheader()
+    writer.writerows(entries)
+    replace_text(file, text.getvalue())
 
 
 def main(results: str, page: str, name: str = "") -> None:

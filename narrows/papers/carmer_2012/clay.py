@@ -5,8 +5,9 @@ colloids alone, and by what they do to each other: they only repel, or attract a
 """
 
 from analysis import RunDirectory
-from analysis.diffusivity import AlongAxis, ColorDiffusivity, MiddleDiffusivity
+from analysis.diffusivity import AlongAxis, ColorDiffusivity
 from analysis.estimate import Estimate
+from analysis.measures.middle_displacement import displacements
 from lammps_inputs import Scene
 from lammps_inputs.scenes.claylike import Claylike
 from narrows.papers.carmer_2012.pores import draw
@@ -51,29 +52,19 @@ def scenes(quality: Quality) -> list[Scene]:
 
 def by_displacements(run: RunDirectory) -> Estimate:
     """D across the walls of tracers in the middle third, by their mean squared displacement."""
-    radius = run.species().radius
-    estimator = MiddleDiffusivity(_across(run), radius, run.box.sizes[2] - radius)
-    found = estimator.run(start=_first(run)).results
+    found = displacements(run, axis=2)
     return Estimate(found.diffusivity, found.error, None, found.freedom)
 
 
 def by_colors(run: RunDirectory) -> Profile:
     """D(z) by colours laid on the paths, z from the middle."""
     height = run.box.sizes[2]
+    across = AlongAxis(run.universe().atoms, "z")
     estimator = ColorDiffusivity(
-        _across(run), SURFACE, height - SURFACE, probability=PROBABILITY, reach=REACH
+        across, SURFACE, height - SURFACE, probability=PROBABILITY, reach=REACH
     )
-    found = estimator.run(start=_first(run)).results
+    found = estimator.run(start=run.equilibration_frames).results
     return Profile(found.positions - height / 2, found.diffusivity, found.error)
-
-
-def _across(run: RunDirectory) -> AlongAxis:
-    return AlongAxis(run.universe().atoms, "z")
-
-
-def _first(run: RunDirectory) -> int:
-    """Frame after the equilibration."""
-    return -(-run.equilibration_steps // run.clock.sample_steps)
 
 
 def comparison(directories: Directories, quality: Quality) -> Outcome:

@@ -130,6 +130,5 @@ def about_particles(
 
 
 def _likelihood(estimator: BayesianDiffusivity, run: RunDirectory, middle: float) -> Profile:
-    first = -(-run.equilibration_steps // run.clock.sample_steps)
-    results = estimator.run(start=first).results
+    results = estimator.run(start=run.equilibration_frames).results
     return Profile(results.positions - middle, results.diffusivity, results.error)
