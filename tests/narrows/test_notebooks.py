@@ -36,7 +36,6 @@ def test_a_notebook_runs(notebook: Path, capsys: pytest.CaptureFixture[str]) -> 
             "image/png" in o.get("data", {}) for c in cells(notebook) for o in c["outputs"]
         )
         assert len(pyplot.get_fignums()) == figures == 1
-        pyplot.close("all")
 
 
 @pytest.mark.parametrize("notebook", NOTEBOOKS, ids=lambda path: path.stem)
