@@ -1,11 +1,12 @@
 """The thermostats of lane formation against LAMMPS's own isokinetic one: speed, sizes, ranks.
 
-    python benchmarks/lanes.py --out runs/lanes [--pairs 7] [--largest 1e5]
+    python benchmarks/lanes.py --out runs/lanes [--pairs 7] [--largest 1e5] [--page docs/lanes.md]
 
 The peer is `fix nvk` with LAMMPS's fastest pair style for the same potential, lj/cut/opt with a
 sigma that leaves its twelfth power alone. All runs of a round are interleaved, and medians are
 compared, so that what else the machine does falls on all. Times are LAMMPS's loop times multiplied
-by its share of the processor. Prints the table and writes it into the folder (speed.md).
+by its share of the processor. Prints the table, writes it into the folder (speed.md), and renews it
+in a page.
 """
 
 import argparse
@@ -14,6 +15,8 @@ import subprocess
 import sys
 from pathlib import Path
 from statistics import median
+
+from narrows.markdown import replace_block
 
 DECK = Path(__file__).parent / "decks" / "lanes.lmp"
 COMMANDS = Path(sys.executable).parent
@@ -45,6 +48,7 @@ def main() -> None:
     parser.add_argument("--out", type=Path, required=True)
     parser.add_argument("--pairs", type=int, default=7)
     parser.add_argument("--largest", type=float, default=1e5)
+    parser.add_argument("--page", type=Path, help="Markdown page whose table is renewed")
     options = parser.parse_args()
     options.out.mkdir(parents=True, exist_ok=True)
 
@@ -77,6 +81,8 @@ def main() -> None:
     text = "\n".join(rows)
     print(text)
     (options.out / "speed.md").write_text(text + "\n")
+    if options.page:
+        replace_block(options.page, "speed", text)
 
 
 if __name__ == "__main__":
