@@ -20,7 +20,7 @@ import numpy as np
 
 from analysis import analyze
 from analysis.estimate import Estimate
-from lammps_inputs import Scene, make_scene
+from lammps_inputs import make_scene
 from lammps_inputs.placement import Hexagonal
 from lammps_inputs.potentials.soft_disk import SoftDisk
 from lammps_inputs.system import Box, Species
@@ -30,7 +30,8 @@ from srd_driver.reference.soft_pairs import SoftPairs
 from srd_driver.sweep import Run, run_all
 
 STEPS = (0.004, 0.002, 0.001, 0.0005)
-SAFE = {10.0: 0.0002}  # step of the run to begin from, by field; else 0.001
+SAFE = {10.0: 0.0001}  # step of the run to begin from, by field; else 0.001
+STOPPED = "stopped by name"
 TIME = 0.064  # of the trajectories: later, rounding has grown
 KEYS = ("lane_order", "current", "configurational_temperature", "potential_energy")
 KINDS: tuple[Literal["kinetic", "configurational"], ...] = ("kinetic", "configurational")
@@ -62,22 +63,15 @@ def trajectories() -> str:
     return table(("thermostat", "step", "splitting", "Gear, fourth order"), lines)
 
 
-def begun(out: Path, name: str, scene: Scene) -> Path:
-    """A finished run."""
-    folder = out / name
-    failures = run_all([Run(folder, scene, "md")], jobs=1)
-    if failures:
-        raise SystemExit(failures[0].message)
-    return folder
-
-
 def averages(
     out: Path, title: str, fields: dict[str, Any], times: dict[str, float]
 ) -> list[tuple[str, ...]]:
     """A row for each step, all from the state that the first run leaves."""
     name = title.replace(", ", "-").replace(" ", "")
     first = make_scene("lanes", **fields, time_step=SAFE.get(fields["field"], 0.001), **times)
-    start = begun(out, f"{name}-start", first)
+    start = out / f"{name}-start"
+    if run_all([Run(start, first, "md")], jobs=1):
+        return [(title, f"{first.model_dump()['time_step']:g}", STOPPED, *[""] * len(KEYS))]
     lines = []
     for step in STEPS:
         scene = make_scene(
@@ -93,7 +87,7 @@ def averages(
         failures = run_all([Run(folder, scene, "md")], jobs=1)
         spent = out / f"{name}-{step:g}.seconds"
         if failures:
-            lines.append((title, f"{step:g}", "stopped by name", *[""] * len(KEYS)))
+            lines.append((title, f"{step:g}", STOPPED, *[""] * len(KEYS)))
             continue
         if not spent.exists():
             spent.write_text(json.dumps(seconds() - before))
