@@ -24,14 +24,20 @@ def local_derivative(
         (P,); NaN where fewer than 5 weighted values are within reach.
     """
     places = positions if at is None else at
+    distance = (positions - places[:, None]) / reach
+    near = (np.abs(distance) <= 1 + 1e-9) & (weights > 0)
+    known = near.sum(axis=1) > CUBIC
+    distance, power = distance[known], np.where(near, weights, 0.0)[known]
+    power /= power.max(axis=1, keepdims=True)
+    given = np.where(weights > 0, values, 0.0)
+    sums, sides = [], []
+    for _ in range(2 * CUBIC - 1):
+        sums.append(power.sum(axis=1))
+        sides.append(power @ given)
+        power *= distance
+    order = np.arange(CUBIC)
+    normal = np.array(sums).T[:, order[:, None] + order]
+    right = np.array(sides[:CUBIC]).T[:, :, None]
     slopes = np.full(len(places), np.nan)
-    for n, place in enumerate(places):
-        near = (np.abs(positions - place) <= reach * (1 + 1e-9)) & (weights > 0)
-        if near.sum() <= CUBIC:
-            continue
-        distance = (positions[near] - place) / reach
-        root = np.sqrt(weights[near] / weights[near].max())
-        powers = distance[:, None] ** np.arange(CUBIC)
-        fit = np.linalg.lstsq(powers * root[:, None], values[near] * root, rcond=None)[0]
-        slopes[n] = fit[1] / reach
+    slopes[known] = np.linalg.solve(normal, right)[:, 1, 0] / reach
     return slopes
