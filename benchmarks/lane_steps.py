@@ -13,6 +13,7 @@ makes all runs longer or shorter.
 import argparse
 import json
 import resource
+import sys
 from pathlib import Path
 from typing import Any, Literal
 
@@ -68,10 +69,12 @@ def averages(
 ) -> list[tuple[str, ...]]:
     """A row for each step, all from the state that the first run leaves."""
     name = title.replace(", ", "-").replace(" ", "")
-    first = make_scene("lanes", **fields, time_step=SAFE.get(fields["field"], 0.001), **times)
+    safe = SAFE.get(fields["field"], 0.001)
+    first = make_scene("lanes", **fields, time_step=safe, **times)
     start = out / f"{name}-start"
-    if run_all([Run(start, first, "md")], jobs=1):
-        return [(title, f"{first.model_dump()['time_step']:g}", STOPPED, *[""] * len(KEYS))]
+    if failures := run_all([Run(start, first, "md")], jobs=1):
+        print(failures[0].message, file=sys.stderr)
+        return [(title, f"{safe:g}, to begin", STOPPED, *[""] * len(KEYS))]
     lines = []
     for step in STEPS:
         scene = make_scene(
@@ -87,6 +90,7 @@ def averages(
         failures = run_all([Run(folder, scene, "md")], jobs=1)
         spent = out / f"{name}-{step:g}.seconds"
         if failures:
+            print(failures[0].message, file=sys.stderr)
             lines.append((title, f"{step:g}", STOPPED, *[""] * len(KEYS)))
             continue
         if not spent.exists():

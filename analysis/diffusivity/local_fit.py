@@ -30,6 +30,7 @@ def local_derivative(
     distance, power = distance[known], np.where(near, weights, 0.0)[known]
     power /= power.max(axis=1, keepdims=True)
     given = np.where(weights > 0, values, 0.0)
+    # sums over w d^n and w d^n y: the normal equations of all windows at once
     sums, sides = [], []
     for _ in range(2 * CUBIC - 1):
         sums.append(power.sum(axis=1))

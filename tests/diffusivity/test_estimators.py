@@ -219,6 +219,17 @@ def test_displacements_by_hand() -> None:
     assert results.lags == pytest.approx(walks.FRAME * np.arange(1, 5))
 
 
+def test_local_derivative_is_that_of_the_weighted_fit_of_numpy() -> None:
+    random = np.random.default_rng(3)
+    x = np.sort(random.uniform(0, 1, 60))
+    y, weights = random.normal(size=60), random.uniform(0.01, 1, 60) * (random.random(60) > 0.1)
+    slopes = local_derivative(x, y, weights, 0.3)
+    for place, slope in zip(x, slopes, strict=True):
+        near = (np.abs(x - place) <= 0.3) & (weights > 0)
+        fit = np.polynomial.Polynomial.fit(x[near], y[near], 3, w=np.sqrt(weights[near]))
+        assert slope == pytest.approx(fit.deriv()(place), rel=1e-8, abs=1e-8)
+
+
 def test_local_derivative_of_a_cubic_is_exact() -> None:
     x = np.linspace(0, 3, 61)
     weights = np.random.default_rng(0).uniform(0.1, 2, 61)
