@@ -1,6 +1,6 @@
 """Event-driven hard spheres: collisions per second by size, and error of D(z) by run time.
 
-    python benchmarks/events.py [--sizes 500,2000,16000,128000,1000000] [--time 60]
+    python benchmarks/events.py [--sizes 500,2000,16000] [--time 60] [--page docs/events.md]
 
 Speed: collisions per second of processor time at packing 0.35, beside the plain loop over all pairs
 of `brute_force.py` (at N = 60, for it costs N^2 an event). The sizes are timed one after another,
@@ -21,6 +21,8 @@ import argparse
 import math
 import tempfile
 import time
+from collections.abc import Iterator
+from itertools import chain
 from pathlib import Path
 from statistics import median
 
@@ -30,6 +32,7 @@ from analysis import RunDirectory
 from analysis.diffusivity import color_diffusivity
 from analysis.measures import path_diffusivity
 from lammps_inputs.scenes.pore import Pore
+from narrows.markdown import replace_block
 from srd_driver import Simulation
 from srd_driver.events import HardSpheres, Profile, WallReactions
 from srd_driver.events.brute_force import BruteForce
@@ -69,7 +72,7 @@ def brute_rate(count: int = 60) -> float:
     return collisions / (time.process_time() - began)
 
 
-def speed(sizes: list[int]) -> None:
+def speed(sizes: list[int]) -> Iterator[str]:
     engines = {count: bulk(count) for count in sorted({2000, 60, *sizes})}
     rates: dict[int, list[float]] = {count: [] for count in engines}
     plain = []
@@ -79,18 +82,18 @@ def speed(sizes: list[int]) -> None:
             rates[count].append(rate(engine))
     for count, each in rates.items():
         ratio = median(a / b for a, b in zip(each, rates[2000], strict=True))
-        print(
+        yield (
             f"N {count:8d}  {median(each) / 1e6:.3f} M collisions/s  {ratio:.2f} of N 2000  "
             f"({engines[count].overheads['crossings']:.2f} crossings, "
             f"{engines[count].overheads['repredicted']:.2f} renewed predictions a collision)"
         )
     ratio = median(a / b for a, b in zip(rates[60], plain, strict=True))
-    print(
+    yield (
         f"plain loop, N 60: {median(plain):.0f} collisions/s; this package {ratio:.0f} times that"
     )
 
 
-def accuracy(seconds: float, count: int) -> None:
+def accuracy(seconds: float, count: int) -> Iterator[str]:
     side = math.sqrt(count * math.pi / 6 / PACKING / WIDTH)
     engine = HardSpheres.fluid(
         count, [side, side, WIDTH], (2,), reactions=WallReactions(PROBABILITIES), seed=1
@@ -104,15 +107,15 @@ def accuracy(seconds: float, count: int) -> None:
             engine.sample()
         profiles.append(engine.take_profile())
     spent = time.process_time() - start
-    print(f"D(z), N {count}, {engine.time - STEADY:.0f} time units in {spent:.0f} s:")
+    yield f"D(z), N {count}, {engine.time - STEADY:.0f} time units in {spent:.0f} s:"
     for pieces in (len(profiles) // 4, len(profiles)):
         share = seconds * pieces / len(profiles)
         for k, p in enumerate(PROBABILITIES):
             label, q = (relative_error(profiles[:pieces], kind, k) for kind in (0, 1))
-            print(f"  {share:5.0f} s  p_r {p:<5g} error {label:.1%} by labels, {q:.1%} by q")
+            yield f"  {share:5.0f} s  p_r {p:<5g} error {label:.1%} by labels, {q:.1%} by q"
 
 
-def accuracy_of_md(seconds: float) -> None:
+def accuracy_of_md(seconds: float) -> Iterator[str]:
     """The same pore of pseudo hard spheres by LAMMPS, D by colours laid on the paths."""
     scene = Pore.make(
         particles=FEW,
@@ -132,11 +135,11 @@ def accuracy_of_md(seconds: float) -> None:
                 simulation.run(2.0)
             simulated = simulation.time - scene.equilibration
         found = path_diffusivity.measure(RunDirectory(directory))
-    print(f"D(z), N {FEW}, engine md, {simulated:.0f} time units in {spent:.0f} s:")
+    yield f"D(z), N {FEW}, engine md, {simulated:.0f} time units in {spent:.0f} s:"
     for line in found.warnings:
-        print(f"  {line}")
+        yield f"  {line}"
     for name, profile in (found.entries["path_diffusivity"] or {}).items():
-        print(f"  error {profile['error_of_a_value'] / profile['middle']:.1%} by {name}")
+        yield f"  error {profile['error_of_a_value'] / profile['middle']:.1%} by {name}"
 
 
 def relative_error(profiles: list[Profile], kind: int, k: int) -> float:
@@ -161,11 +164,19 @@ def main() -> None:
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
     parser.add_argument("--sizes", default="500,2000,16000,128000,1000000")
     parser.add_argument("--time", type=float, default=60)
+    parser.add_argument("--page", type=Path, help="Markdown page whose output is renewed")
     arguments = parser.parse_args()
-    speed([int(size) for size in arguments.sizes.split(",")])
-    accuracy(arguments.time, 2000)
-    accuracy(arguments.time, FEW)
-    accuracy_of_md(arguments.time)
+    lines = []
+    for line in chain(
+        speed([int(size) for size in arguments.sizes.split(",")]),
+        accuracy(arguments.time, 2000),
+        accuracy(arguments.time, FEW),
+        accuracy_of_md(arguments.time),
+    ):
+        print(line, flush=True)
+        lines.append(line)
+    if arguments.page:
+        replace_block(arguments.page, "events", "\n".join(["```text", *lines, "```"]))
 
 
 if __name__ == "__main__":
