@@ -2,9 +2,9 @@
 
     python benchmarks/wheels.py LMP [--pairs 7]
 
-LMP is the `lmp` of the other environment, where narrows is installed from the wheel of
+LMP is the `lmp` of the other environment, where narrows is built for this machine only:
 
-    pip wheel . --no-deps -C cmake.define.NARROWS_NATIVE=OFF
+    pip install . -C cmake.define.NARROWS_NATIVE=ON
 
 Both run the same decks, one after the other, the order changing from pair to pair. The ratio is of
 the processor time of whole processes, less that of one which takes a single step.
@@ -45,7 +45,7 @@ def main() -> None:
     parser.add_argument("--pairs", type=int, default=7)
     given = parser.parse_args()
     mine, other = Path(sys.executable).with_name("lmp"), given.lmp.absolute()
-    print("| deck | the wheel's time over the native build's | quartiles |\n|---|---|---|")
+    print("| deck | the default build over the native one | quartiles |\n|---|---|---|")
     for name, steps in DECKS.items():
         deck = Path(__file__).parent.absolute() / "decks" / f"{name}.lmp"
         start = {lmp: processor_seconds(lmp, deck, 1) for lmp in (mine, other)}
@@ -53,7 +53,7 @@ def main() -> None:
         for pair in range(given.pairs):
             order = (mine, other) if pair % 2 else (other, mine)
             spent = {lmp: processor_seconds(lmp, deck, steps) - start[lmp] for lmp in order}
-            ratios.append(spent[other] / spent[mine])
+            ratios.append(spent[mine] / spent[other])
         low, middle, high = np.quantile(ratios, [0.25, 0.5, 0.75])
         print(f"| {name} | {middle:.3f} | {low:.3f} to {high:.3f} |", flush=True)
 
