@@ -146,6 +146,11 @@ def _too_slow(fluctuation: Fluctuation, samples: int, interval: float | None) ->
     scale, unit = (1.0, "samples") if interval is None else (interval, "t0")
     slow = scale * motion
     return (
-        f"lower bound: run longer, at least {ADVISED * slow:.2g} {unit}; motion of about "
-        f"{slow:.2g} {unit} is slow for {scale * samples:.4g} {unit}"
+        f"lower bound: run longer, at least {two_digits(ADVISED * slow)} {unit}; motion of about "
+        f"{two_digits(slow)} {unit} is slow for {scale * samples:.6g} {unit}"
     )
+
+
+def two_digits(number: float) -> str:
+    """Two digits, without a power of ten below a million: 2300, not 2.3e+03."""
+    return f"{float(f'{number:.2g}'):g}"

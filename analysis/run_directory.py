@@ -212,7 +212,10 @@ class RunDirectory:
         kept = ", ".join(output.file for output in self.manifest.system.outputs)
         hint = ""
         if kind == "trajectory":
-            hint = ": it has no particles, or did not keep them (a fluid is seen by flow_interval)"
+            hint = (
+                ": it has no particles, or did not keep them (flow_interval keeps the flow of a "
+                "fluid, narrows analyze draws it)"
+            )
         wanted = kind if name == kind else f"{kind} {name}"
         raise RunDirectoryError(f"{self.path}: no {wanted} among its outputs {kept}{hint}")
 

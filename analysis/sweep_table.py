@@ -75,6 +75,8 @@ class SweepTable:
     >>> table = SweepTable([point], [point.row(["speed"])], finished=1, runs=1, problems=[])
     >>> table["speed"]
     array([0.03])
+    >>> print(table)
+    1 points from 1 of 1 runs; columns: gravity, repeats, speed, speed_error, notes
     """
 
     points: list[Point]
@@ -97,6 +99,12 @@ class SweepTable:
         if all(value is None or isinstance(value, int | float) for value in values):
             return np.array([math.nan if value is None else value for value in values])
         return np.array(values, dtype=object)
+
+    def __str__(self) -> str:
+        """How much there is, and the names of the columns."""
+        columns = ", ".join(self.rows[0]) if self.rows else "none"
+        counted = f"{len(self.points)} points from {self.finished} of {self.runs} runs"
+        return f"{counted}; columns: {columns}"
 
     def dataframe(self) -> "pandas.DataFrame":
         """The table as a pandas DataFrame, where pandas is installed.

@@ -41,7 +41,10 @@ td.number { white-space: nowrap; font-variant-numeric: tabular-nums; }
 .open { color: var(--open); }
 nav a { margin-right: 10px; }
 pre { white-space: pre-wrap; font-size: 12.5px; margin: 0; }
-@media (max-width: 600px) { th, td { padding: 4px; } td.number { white-space: normal; } }
+@media (max-width: 600px) { main { padding: 6px; } section { padding: 10px; }
+  table { font-size: 12.5px; } th, td { padding: 4px 3px; }
+  td:first-child { overflow-wrap: anywhere; }
+  td.number { white-space: normal; } }
 """
 
 

@@ -53,7 +53,7 @@ Longest = Annotated[
     typer.Option(
         min=0.0,
         metavar="TIME",
-        help="duration at which --until ends in any case [t0]; default: 100 times the duration",
+        help="duration at which --until ends in any case, in t0; default: 100 times the duration",
     ),
 ]
 ENGINES = "|".join(all_engines())

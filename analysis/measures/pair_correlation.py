@@ -4,6 +4,7 @@ import numpy as np
 from matplotlib.figure import Figure
 
 from analysis.arrays import Array
+from analysis.correlated_mean import two_digits
 from analysis.drawing import one_panel
 from analysis.findings import Findings
 from analysis.measures.settling_speed import sampled_frames
@@ -28,7 +29,7 @@ def measure(run: RunDirectory) -> Findings:
     }
     if noise > NOISIEST:
         longer = run.simulated_time() * (noise / NOISIEST) ** 2
-        line = f"g(x): noise of {noise:.2g}; run longer, at least {longer:.2g} t0"
+        line = f"g(x): noise of {noise:.2g}; run longer, at least {two_digits(longer)} t0"
         return Findings({"pair_correlation": entry}, left_out=(line,))
     picture = draw(distance, g, 2 * run.species().radius)
     return Findings({"pair_correlation": entry}, {"pair_correlation.png": picture})

@@ -19,10 +19,12 @@ def diffusivity(
     axis: Annotated[str, typer.Option(metavar="x|y|z", help="across the slit")] = "z",
     select: Annotated[str, typer.Option(help="atoms, in MDAnalysis's words")] = "all",
     dt: Annotated[
-        float | None, typer.Option(help="time between frames [time of the file], if it has none")
+        float | None,
+        typer.Option(help="time between frames, in a unit of yours, if the file has none"),
     ] = None,
     low: Annotated[
-        float | None, typer.Option(help="lower surface [length of the file]; default: near the end")
+        float | None,
+        typer.Option(help="lower surface, in units of the file; default: near the end"),
     ] = None,
     high: Annotated[float | None, typer.Option(help="upper surface; likewise")] = None,
     bins: Annotated[

@@ -48,8 +48,10 @@ def export(
             opened = RunDirectory(run)
             field = opened.field()
             used = opened.flow_used(field)
+        content = f"averages: {len(field.steps)}"
         if file.suffix == ".vti":
+            content = f"mean of averages: {np.count_nonzero(used)}"
             field = field.mean(used)
         write(field, file)
         shape = " x ".join(map(str, field.counts[0].shape))
-        say(f"{file}: averages of {shape} bins: {len(field.steps)}")
+        say(f"{file}: {shape} bins, {content}")

@@ -88,11 +88,11 @@ def check(
     file: File,
     sites: Annotated[int, typer.Option(metavar="L", min=2, help="sites of the full generator")] = 7,
     start: Annotated[
-        int | None, typer.Option("--from", metavar="K", help="initial shock position [sites]")
+        int | None, typer.Option("--from", metavar="K", help="initial shock position, in sites")
     ] = None,
     times: Annotated[
         str | None,
-        typer.Option(metavar="T1,T2", help="times for the mean shock position [inverse rates]"),
+        typer.Option(metavar="T1,T2", help="times for the mean shock position, in inverse rates"),
     ] = None,
     out: Json = None,
 ) -> None:
@@ -126,7 +126,7 @@ def simulate(
     replicas: Annotated[int, typer.Option(min=2, max=MOST, help="independent runs")] = 20,
     time: Annotated[
         float,
-        typer.Option(min=0, max=LONGEST, help="length of each run [inverse rates]"),
+        typer.Option(min=0, max=LONGEST, help="length of each run, in inverse rates"),
     ] = 200.0,
     samples: Annotated[
         int, typer.Option(min=3, max=MOST, help="equally spaced samples, first at time 0")
@@ -134,7 +134,7 @@ def simulate(
     seed: Annotated[int, typer.Option(min=0, help="equal seeds give equal results")] = 1,
     start: Annotated[
         int | None,
-        typer.Option("--from", metavar="K", help="initial shock position [sites], default L/2"),
+        typer.Option("--from", metavar="K", help="initial shock position, in sites; default: L/2"),
     ] = None,
     out: Json = None,
     figures: Figures = None,

@@ -15,7 +15,7 @@ Directory = Annotated[Path, typer.Argument(metavar="RUN", help="a run with parti
 def picture(
     directory: Directory,
     time: Annotated[
-        float | None, typer.Option(help="of which output [t0]; default: the last")
+        float | None, typer.Option(help="of which output, in t0; default: the last")
     ] = None,
     out: Annotated[
         Path | None, typer.Option("--out", metavar="FILE", help="default: RUN/picture.png")

@@ -37,7 +37,7 @@ def run(
     ] = None,
     resume: Annotated[bool, typer.Option("--resume", help="go on with the run in DIR")] = False,
     checkpoint_interval: Annotated[
-        float, typer.Option(min=0.0, help="time between two checkpoints [t0]")
+        float, typer.Option(min=0.0, help="time between two checkpoints, in t0")
     ] = 20.0,
     until: Until = None,
     longest: Longest = None,

@@ -39,6 +39,8 @@ def scenes(
     say(about)
     table = Table("field", "unit", "default", "allowed", "meaning")
     table.columns[0].no_wrap = True
+    for column in table.columns[1:]:
+        column.overflow = "fold"  # a long word is broken, not cut off
     for row in field_rows(known[scene]):
         table.add_row(row.name, row.unit, row.default, row.allowed, row.meaning)
     console.print(table)

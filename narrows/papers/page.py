@@ -109,14 +109,14 @@ def _verdicts(report: Report) -> str:
     everything = [result for made in report.made for result in made.outcome.results]
     rows = [
         (
-            f'<a href="#figure-{made.figure.number}">{made.figure.number}</a>',
-            escape(made.figure.caption),
+            f'<a href="#figure-{made.figure.number}">{made.figure.number}</a> '
+            + escape(made.figure.caption),
             *_counted(made.outcome.results),
         )
         for made in report.made
     ]
-    together = (f"<b>{len(everything)} numbers</b>", "", *_counted(everything))
-    headings = ("figure", "what it shows", *VERDICTS, "nothing to compare")
+    together = (f"<b>{len(everything)} numbers</b>", *_counted(everything))
+    headings = ("figure", *VERDICTS, "nothing to compare")
     return html.table(headings, [together, *rows])
 
 

@@ -3,6 +3,7 @@
 import re
 
 import pytest
+import typer
 from typer.testing import CliRunner, Result
 
 from lammps_inputs import all_scenes
@@ -51,6 +52,24 @@ def test_scenes_of_one_lists_its_fields_as_the_page_does(name: str) -> None:
         assert row.allowed in line
         assert row.meaning in line
         assert f"| `{row.name}` | {row.default} | " in page
+
+
+def test_no_unit_is_taken_for_markup() -> None:
+    """Square brackets in a help are markup, of which nothing is shown."""
+    helped = [typer.main.get_command(app)]
+    for group in helped:
+        for command in getattr(group, "commands", {}).values():
+            helped.append(command)
+            helps = [getattr(option, "help", None) or "" for option in command.params]
+            assert not [words for words in helps if "[" in words], command.name
+    assert len(helped) > 17
+    assert "two checkpoints, in t0" in told("run", "--help").stdout
+
+
+def test_a_narrow_terminal_cuts_no_word_off() -> None:
+    text = told("scenes", "channel", environment={"COLUMNS": "70"}).stdout
+    assert "…" not in text
+    assert "maxwell" in text
 
 
 @pytest.mark.parametrize(
