@@ -18,7 +18,7 @@ PHI = "lane_order_near"  # the reading of phi that has the paper's numbers (docs
 LARGEST = 10.0  # field of a configurational run
 UP, DOWN = 1, 2  # seeds
 ALIKE = ("dimension", "density", "thermostat", "seed")  # what the runs of a ladder share
-LENGTHS = {"kinetic": (1000.0, 1500.0), "configurational": (300.0, 700.0)}  # full quality [t0]
+MELTED = 1.25  # field above which a configurational run needs short steps to last
 THERMOSTATS = {
     "kinetic": "kinetic energy",
     "configurational": "configurational temperature",
@@ -30,12 +30,15 @@ THERMOSTATS = {
 def disks(density: float, field: float, thermostat: str, quality: Quality, seed: int = UP) -> Scene:
     """896 soft disks in a field; seed `DOWN` on a ladder's way down."""
     quick = quality == "quick"
-    equilibration, duration = (150.0, 100.0) if thermostat == "kinetic" else (50.0, 50.0)
-    step = 0.001
-    if thermostat == "kinetic" and field <= 10:
-        step = 0.002  # as right at half the price (docs/lanes.md)
-    if thermostat == "configurational" and field > 4:
-        step = 0.0005  # 0.001 is too long at the paper's highest fields
+    if thermostat == "kinetic":
+        equilibration, duration = (150.0, 100.0) if quick else (1000.0, 1500.0)
+        step = 0.002 if field <= 10 else 0.001  # as right at half the price (docs/lanes.md)
+    elif quick:
+        equilibration, duration = 50.0, 50.0
+        step = 0.001 if field <= 4 else 0.0005
+    else:  # 0.001 lasted for 420 time units at n = 0.75, F = 4, the paper's 0.001 at F = 10 for none
+        equilibration, duration = (300.0, 700.0) if field <= MELTED else (100.0, 200.0)
+        step = 0.001 if field <= MELTED else 0.0002 if field <= 6 else 0.0001
     return make_scene(
         "lanes",
         density=density,
@@ -43,8 +46,8 @@ def disks(density: float, field: float, thermostat: str, quality: Quality, seed:
         thermostat=thermostat,
         time_step=step,
         sampling_interval=2.0 if quick else 5.0,
-        equilibration=equilibration if quick else LENGTHS[thermostat][0],
-        duration=duration if quick else LENGTHS[thermostat][1],
+        equilibration=equilibration,
+        duration=duration,
         seed=seed,
     )
 
@@ -57,7 +60,7 @@ def spheres(field: float, thermostat: str, quality: Quality) -> Scene:
         dimension=3,
         field=field,
         thermostat=thermostat,
-        time_step=0.001 if thermostat == "kinetic" or field < 4 else 0.0005,
+        time_step=0.001 if thermostat == "kinetic" or field < 4 else 0.0005 if quick else 0.0002,
         sampling_interval=2.0 if quick else 5.0,
         equilibration=40.0 if quick else 400.0,
         duration=40.0 if quick else 600.0,
@@ -69,7 +72,9 @@ def sheared(rate: float, thermostat: str, quality: Quality) -> Scene:
     quick = quality == "quick"
     step = 0.001 if rate <= 10 else 0.0002
     if thermostat == "configurational" and rate > 1:
-        step = 0.0005 if rate <= 2 else 0.0002 if rate <= 4 else 0.0001 if rate <= 5 else 0.00004
+        step = 0.0005 if rate <= 2 else 0.0002 if rate <= 3 else 0.0001 if rate <= 4 else 0.00004
+        if quick:
+            step = {4.0: 0.0002, 5.0: 0.0001}.get(rate, step)  # ladders too short to break
     return make_scene(
         "shear",
         rate=rate,
