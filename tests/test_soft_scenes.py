@@ -41,7 +41,7 @@ NUMBERS = {
 }
 
 
-@pytest.mark.parametrize("thermostat", EXACT)
+@pytest.mark.parametrize("thermostat", [*EXACT, *NOISE])
 def test_a_killed_run_goes_on_to_the_last_bit(thermostat: str, tmp_path: Path) -> None:
     scene = lanes(thermostat=thermostat)
     whole, again = finish(scene, tmp_path / "whole"), killed_and_resumed(scene, tmp_path / "killed")
@@ -51,18 +51,6 @@ def test_a_killed_run_goes_on_to_the_last_bit(thermostat: str, tmp_path: Path) -
     assert {key for key, entry in summary.items() if isinstance(entry, dict)} >= NUMBERS
     assert summary["finished"]
     assert summary["figures"] == ["colour_flow.png", "lane_order.png", "snapshot.png"]
-
-
-@pytest.mark.parametrize("thermostat", NOISE)
-def test_with_noise_a_killed_run_goes_on_with_other_noise(thermostat: str, tmp_path: Path) -> None:
-    scene = lanes(thermostat=thermostat)
-    whole, again = finish(scene, tmp_path / "whole"), killed_and_resumed(scene, tmp_path / "killed")
-    one, other = (rows(folder, "observables.dat") for folder in (whole, again))
-    assert [line.split()[0] for line in one] == [line.split()[0] for line in other]
-    assert one[0] == other[0]
-    assert one[-1] != other[-1]
-    summary = analyze(again)
-    assert {key for key, entry in summary.items() if isinstance(entry, dict)} >= NUMBERS
 
 
 @pytest.mark.parametrize("thermostat", ["kinetic", "configurational"])

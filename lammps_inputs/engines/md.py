@@ -11,7 +11,7 @@ from lammps_inputs.potentials.harmonic_wall import HarmonicWall
 from lammps_inputs.potentials.integrated_wall import IntegratedWall
 from lammps_inputs.potentials.pseudo_hard import PseudoHard
 from lammps_inputs.potentials.repulsive_mie import RepulsiveMie
-from lammps_inputs.system import SIZES, System, VelocityVerlet
+from lammps_inputs.system import SIZES, DissipativePairs, Langevin, System, VelocityVerlet
 
 SKIN = 0.3  # of the neighbour list [a0]
 LISTS = "fix lists all balance ${sample} 1e9 shift x 1 1.1"
@@ -33,9 +33,6 @@ class MolecularDynamics(LammpsEngine):
 
     def needs_plugin(self, system: System) -> bool:
         return soft_particles.needs_plugin(system)
-
-    def seeds(self, seed: int, step: int) -> dict[str, int]:
-        return soft_particles.seeds(seed, step)
 
     def problems(self, system: System) -> Iterator[str]:
         if system.solvent:
@@ -76,7 +73,14 @@ class MolecularDynamics(LammpsEngine):
             yield from soft_particles.kept_places()
 
     def renewal(self, system: System) -> Sequence[str]:
-        return (soft_particles.PUT_BACK, "unfix lists", LISTS) if system.shear_rate else ()
+        commands = list[str]()
+        if isinstance(system.motion, Langevin):
+            commands.append(soft_particles.langevin_noise(system.motion))
+        if isinstance(system.motion, DissipativePairs):
+            commands += [line for line in self.interactions(system) if line.startswith("pair_")]
+        if system.shear_rate:
+            commands.append(soft_particles.PUT_BACK)
+        return (*commands, "unfix lists", LISTS) if commands else ()
 
     def motion(self, system: System) -> Iterator[str]:
         yield from soft_particles.motion(system)

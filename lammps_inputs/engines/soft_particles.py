@@ -2,8 +2,6 @@
 
 from collections.abc import Iterator
 
-import numpy as np
-
 from lammps_inputs.potentials.soft_disk import SoftDisk
 from lammps_inputs.potentials.weeks_chandler_andersen import WeeksChandlerAndersen
 from lammps_inputs.system import Configurational, DissipativePairs, Isokinetic, Langevin, System
@@ -13,21 +11,14 @@ MOTIONS = (Isokinetic, Configurational, Langevin, DissipativePairs)
 PUT_BACK = (
     "set group all x v_place_x y v_place_y z v_place_z image v_place_ix v_place_iy v_place_iz"
 )
-NOISE_STREAM = 92  # Philox key of the seeds of noise after a resume
+# LAMMPS keeps no noise in restart files: each sampling interval has a seed of its own, by its step
+NOISE_SEED = "$((v_seed+7919*step-1)%900000000+1:%.0f)"
 
 
 def needs_plugin(system: System) -> bool:
     """Whether a style of ours stands for a part."""
     compiled = any(isinstance(i.potential, POTENTIALS) for i in system.interactions)
     return compiled or bool(system.rest) or isinstance(system.motion, Isokinetic | Configurational)
-
-
-def seeds(seed: int, step: int) -> dict[str, int]:
-    """A resumed run must not repeat the noise it began with."""
-    if step == 0:
-        return {"seed": seed}
-    words = np.random.Philox(key=[seed, NOISE_STREAM], counter=[step, 0, 0, 0])
-    return {"seed": int(words.random_raw() % 900_000_000) + 1}
 
 
 def problems(system: System) -> Iterator[str]:
@@ -48,7 +39,7 @@ def dissipative_style(system: System) -> str:
     motion = system.motion
     if not isinstance(motion, DissipativePairs):
         return ""
-    return f"dpd/tstat {motion.temperature!r} {motion.temperature!r} {motion.cutoff!r} ${{seed}}"
+    return f"dpd/tstat {motion.temperature!r} {motion.temperature!r} {motion.cutoff!r} {NOISE_SEED}"
 
 
 def dissipative_pairs(system: System) -> Iterator[str]:
@@ -93,11 +84,16 @@ def motion(system: System) -> Iterator[str]:
             constants = f"{motion.temperature!r} {motion.damping!r}"
             yield f"fix motion all configurational{sllod} {constants}"
         case Langevin():
-            temperature = f"{motion.temperature!r} {motion.temperature!r}"
             yield "fix motion all nve"
-            yield f"fix noise all langevin {temperature} {1 / motion.friction!r} ${{seed}}"
+            yield langevin_noise(motion)
         case _:
             yield "fix motion all nve"
+
+
+def langevin_noise(motion: Langevin) -> str:
+    """The noise and friction of a sampling interval."""
+    temperature = f"{motion.temperature!r} {motion.temperature!r}"
+    return f"fix noise all langevin {temperature} {1 / motion.friction!r} {NOISE_SEED}"
 
 
 def computes(system: System) -> Iterator[str]:
