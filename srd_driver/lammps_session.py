@@ -31,10 +31,10 @@ class LammpsSession:
     """The lines of `in.lammps` up to its `run`, then runs in pieces.
 
     LAMMPS itself writes `checkpoint.STEP.restart` every `checkpoint_steps`, from inside its run, so
-    a checkpoint does not disturb the trajectory. fix mpc and thermostats resume bit for bit. fix srd
-    keeps nothing in restart files: after a resume positions and velocities of all particles are
-    exact, the random numbers are new ones. Where a set-up shows, in a sheared box and in the noise
-    of fix langevin and pair dpd/tstat, there is one at each output, as in its deck.
+    a checkpoint does not disturb the trajectory. fix mpc and thermostats resume bit for bit. fix
+    srd keeps nothing in restart files: after a resume positions and velocities of all particles
+    are exact, the random numbers are new ones. Where a set-up shows, in a sheared box and in the
+    noise of fix langevin and pair dpd/tstat, there is one at each output, as in its deck.
     """
 
     suffix = "restart"
