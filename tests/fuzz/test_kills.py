@@ -34,6 +34,13 @@ ENVIRONMENT = os.environ | {
     "PATH": f"{COMMANDS}:/usr/bin:/bin",
     "OMP_NUM_THREADS": "1",
 }
+LANES: Mapping[str, object] = {
+    "particles": 224,
+    "density": 0.75,
+    "rest": 2,
+    "sampling_interval": 0.75,
+    "duration": 90,
+}
 OTHERS: dict[str, tuple[str, Mapping[str, object]]] = {  # scene and fields
     "cell": (
         "claylike",
@@ -50,6 +57,8 @@ OTHERS: dict[str, tuple[str, Mapping[str, object]]] = {  # scene and fields
         },
     ),
     "spheres": ("pore", {"particles": 3000, "sampling_interval": 0.75, "duration": 90}),
+    "langevin": ("lanes", {**LANES, "thermostat": "langevin"}),
+    "dissipative pairs": ("lanes", {**LANES, "thermostat": "dpd"}),
 }
 RANKS = {"1 rank": 1, "2 ranks": 2, **dict.fromkeys(OTHERS, 1)}
 LONGEST = 120.0  # seconds until a run that was killed has a process that ended
