@@ -3,8 +3,9 @@
     python -m narrows.papers.table RESULTS PAGE PAPER     # what is held against the paper
     python -m narrows.papers.table RESULTS PAGE FIGURE    # all numbers of a figure
     python -m narrows.papers.table RESULTS FILE.csv       # all numbers of all figures
+    python -m narrows.papers.table FIGURE.csv PAGE NAME COLUMNS  # of a figure's data, by commas
 
-The page has the marks of the paper or of the figure.
+The page has the marks of the paper, of the figure or of that name.
 """
 
 import csv
@@ -55,8 +56,28 @@ def write_csv(results: Path, file: Path) -> None:
     replace_text(file, text.getvalue())
 
 
-def main(results: str, page: str, name: str = "") -> None:
+def data_table(file: Path, columns: list[str]) -> str:
+    """Columns of a figure's data, each with its error where the file has it.
+
+    Raises:
+        KeyError: for a column that the file does not have.
+    """
+    with file.open(encoding="utf-8", newline="") as lines:
+        return table(
+            columns, ([_cell(row, name) for name in columns] for row in csv.DictReader(lines))
+        )
+
+
+def _cell(row: dict[str, str], column: str) -> str:
+    error = row.get(f"{column}_error")
+    return number(float(row[column]), float(error)) if error else row[column]
+
+
+def main(results: str, page: str, name: str = "", columns: str = "") -> None:
     """Renew the table of the page, or write the file of all numbers."""
+    if columns:
+        replace_block(Path(page), name, data_table(Path(results), columns.split(",")))
+        return
     if page.endswith(".csv"):
         write_csv(Path(results), Path(page))
         return
