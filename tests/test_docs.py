@@ -126,7 +126,7 @@ def test_columns_of_a_figures_data_become_a_table(tmp_path: Path) -> None:
     page.write_text("before\n<!-- x -->\n<!-- end of x -->\nafter\n")
     data.write_text("noise,field,current,current_error\nbath,2.0,0.5,0.02\n")
     renew_table(str(data), str(page), "x", "noise,current")
-    rows = "| noise | current |\n| --- | --- |\n| bath | 0.500 +- 0.020 |"
+    rows = "| noise | current |\n| --- | --- |\n| bath | 0.50 +- 0.02 |"
     assert rows in page.read_text()
     with pytest.raises(KeyError, match="speed"):
         renew_table(str(data), str(page), "x", "noise,speed")
