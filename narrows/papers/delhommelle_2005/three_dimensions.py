@@ -91,7 +91,7 @@ def _figure_9(directories: Directories, quality: Quality) -> Outcome:
 def _rates(thermostat: str, quality: Quality) -> tuple[float, ...]:
     """Those that a ladder outlives: docs/lanes.md."""
     if thermostat == "configurational":
-        quick, full = (1.0, 2.0, 4.0, 5.0, 6.0, 7.0), (0.5, 1.0, 1.5, 2.0, 3.0, 4.0, 5.0, 6.0)
+        quick, full = (1.0, 2.0, 4.0, 5.0, 6.0, 7.0), (0.5, 1.0, 1.5, 2.0, 3.0, 4.0, 5.0, 6.0, 7.0)
         return quick if quality == "quick" else full
     if quality == "quick":
         return (1.0, 4.0, 7.0, 10.0, 20.0)
