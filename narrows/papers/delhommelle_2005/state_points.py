@@ -38,7 +38,7 @@ def disks(density: float, field: float, thermostat: str, quality: Quality, seed:
         step = 0.001 if field <= 4 else 0.0005
     else:  # 0.001 lasted for 420 time units at n = 0.75, F = 4 (docs/lanes.md)
         equilibration, duration = (300.0, 700.0) if field <= MELTED else (100.0, 200.0)
-        step = 0.001 if field <= MELTED else 0.0002 if field <= 6 else 0.0001
+        step = 0.001 if field <= MELTED else 0.0002 if field <= 4 else 0.0001
     return make_scene(
         "lanes",
         density=density,
