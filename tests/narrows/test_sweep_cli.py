@@ -36,7 +36,13 @@ def start(*words: str | Path) -> subprocess.Popen[str]:
         stdout=subprocess.PIPE,
         stderr=subprocess.PIPE,
         text=True,
+        preexec_fn=heed_interrupts,
     )
+
+
+def heed_interrupts() -> None:
+    """Of a test run in the background of a shell, which its processes would ignore else."""
+    signal.signal(signal.SIGINT, signal.default_int_handler)
 
 
 def checkpointed(folder: Path) -> bool:
