@@ -1,5 +1,6 @@
 """The scenes `lanes` and `shear`: runs, resumes, two ranks, a ladder of fields, bad input."""
 
+import re
 from pathlib import Path
 from typing import Any
 
@@ -51,6 +52,17 @@ def test_a_killed_run_goes_on_to_the_last_bit(thermostat: str, tmp_path: Path) -
     assert {key for key, entry in summary.items() if isinstance(entry, dict)} >= NUMBERS
     assert summary["finished"]
     assert summary["figures"] == ["colour_flow.png", "lane_order.png", "snapshot.png"]
+
+
+@pytest.mark.parametrize("thermostat", NOISE)
+def test_no_interval_repeats_the_noise_of_another(thermostat: str, tmp_path: Path) -> None:
+    scene = lanes(thermostat=thermostat)
+    finish(scene, tmp_path / "run")
+    noise = r"^(?:fix noise all langevin|pair_style .* dpd/tstat) [\d. ]* (\d+)$"
+    seeds = re.findall(noise, (tmp_path / "run" / "log.lammps").read_text(), re.MULTILINE)
+    clock = scene.system.clock
+    assert len(seeds) == clock.total_steps // clock.sample_steps
+    assert len(set(seeds)) == len(seeds)
 
 
 @pytest.mark.parametrize("thermostat", ["kinetic", "configurational"])

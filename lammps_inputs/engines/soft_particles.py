@@ -11,7 +11,8 @@ MOTIONS = (Isokinetic, Configurational, Langevin, DissipativePairs)
 PUT_BACK = (
     "set group all x v_place_x y v_place_y z v_place_z image v_place_ix v_place_iy v_place_iz"
 )
-# LAMMPS keeps no noise in restart files: each sampling interval has a seed of its own, by its step
+# LAMMPS keeps no noise in restart files: each sampling interval has a seed of its own, by its step.
+# Seeds end at 900000000; the prime keeps the intervals of runs with neighbouring seeds apart.
 NOISE_SEED = "$((v_seed+7919*step-1)%900000000+1:%.0f)"
 
 

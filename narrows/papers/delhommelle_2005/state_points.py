@@ -19,6 +19,10 @@ LARGEST = 10.0  # field of a configurational run
 UP, DOWN = 1, 2  # seeds
 ALIKE = ("dimension", "density", "thermostat", "seed")  # what the runs of a ladder share
 MELTED = 1.25  # field above which a configurational run needs short steps to last
+CONFIGURATIONAL_STEPS = {  # up to which rate of shear; longer runs break where short ones do not
+    "quick": ((1, 0.001), (2, 0.0005), (4, 0.0002), (5, 0.0001)),
+    "full": ((1, 0.001), (2, 0.0005), (3, 0.0002), (4, 0.0001)),
+}
 THERMOSTATS = {
     "kinetic": "kinetic energy",
     "configurational": "configurational temperature",
@@ -36,7 +40,7 @@ def disks(density: float, field: float, thermostat: str, quality: Quality, seed:
     elif quick:
         equilibration, duration = 50.0, 50.0
         step = 0.001 if field <= 4 else 0.0005
-    else:  # 0.001 lasted for 420 time units at n = 0.75, F = 4 (docs/lanes.md)
+    else:  # 0.001 lasted for 420 time units at n = 0.75, F = 4 (docs/reproduce.md)
         equilibration, duration = (300.0, 700.0) if field <= MELTED else (100.0, 200.0)
         step = 0.001 if field <= MELTED else 0.0002 if field <= 4 else 0.0001
     return make_scene(
@@ -71,10 +75,9 @@ def sheared(rate: float, thermostat: str, quality: Quality) -> Scene:
     """1000 of the spheres, sheared; a step of a ladder of rates."""
     quick = quality == "quick"
     step = 0.001 if rate <= 10 else 0.0002
-    if thermostat == "configurational" and rate > 1:
-        step = 0.0005 if rate <= 2 else 0.0002 if rate <= 3 else 0.0001 if rate <= 4 else 0.00004
-        if quick:
-            step = {4.0: 0.0002, 5.0: 0.0001}.get(rate, step)  # ladders too short to break
+    if thermostat == "configurational":
+        steps = CONFIGURATIONAL_STEPS[quality]
+        step = next((step for largest_rate, step in steps if rate <= largest_rate), 0.00004)
     brief = quick or (thermostat == "configurational" and rate > 5)  # 6 breaks after 20 time units
     return make_scene(
         "shear",
