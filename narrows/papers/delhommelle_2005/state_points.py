@@ -59,15 +59,18 @@ def disks(density: float, field: float, thermostat: str, quality: Quality, seed:
 def spheres(field: float, thermostat: str, quality: Quality) -> Scene:
     """1000 Weeks-Chandler-Andersen spheres in a field."""
     quick = quality == "quick"
+    step, equilibration, duration = (0.001, 40.0, 40.0) if quick else (0.001, 400.0, 600.0)
+    if thermostat != "kinetic" and field >= 4:
+        step, equilibration, duration = (0.0005, 40.0, 40.0) if quick else (0.0002, 100.0, 200.0)
     return make_scene(
         "lanes",
         dimension=3,
         field=field,
         thermostat=thermostat,
-        time_step=0.001 if thermostat == "kinetic" or field < 4 else 0.0005 if quick else 0.0002,
+        time_step=step,
         sampling_interval=2.0 if quick else 5.0,
-        equilibration=40.0 if quick else 400.0,
-        duration=40.0 if quick else 600.0,
+        equilibration=equilibration,
+        duration=duration,
     )
 
 
