@@ -1,5 +1,6 @@
 """The look of the figures: ours in blue and its neighbours, the paper's numbers in red."""
 
+import math
 from collections.abc import Sequence
 from typing import Any
 
@@ -54,9 +55,9 @@ def points(
 ) -> None:
     """Measured points with error bars, in the colour and with the marker of a series."""
     look = {"color": COLOURS[number % 6], "marker": MARKERS[number % 6], "linestyle": "none"}
-    values = [estimate.value for estimate in y]
+    values = [math.nan if estimate.value is None else estimate.value for estimate in y]
     errors = [estimate.error or 0.0 for estimate in y]
-    axes.errorbar(x, values, errors, elinewidth=1.0, **(look | words))  # type: ignore[arg-type]
+    axes.errorbar(x, values, errors, elinewidth=1.0, **(look | words))
 
 
 def paper_line(axes: Axes, x: Any, y: Any, label: str, **words: Any) -> None:

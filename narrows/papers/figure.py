@@ -48,6 +48,7 @@ class PaperFigure:
         make: from the finished run directories, by scene, to the outcome.
         scenes: to run, seeds and all; figures that share a scene share its run.
         origin: what the numbers come from where no scene is run.
+        partial: made of the runs that there are, when some have stopped; else left out then.
     """
 
     number: str
@@ -55,6 +56,7 @@ class PaperFigure:
     make: Callable[[Directories, Quality], Outcome]
     scenes: Callable[[Quality], Sequence[Scene]] = field(default=_no_scenes)
     origin: str = "No run."
+    partial: bool = False
 
 
 @dataclass(frozen=True)

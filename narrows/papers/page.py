@@ -28,7 +28,7 @@ class Report:
     """All that the page shows.
 
     Attributes:
-        left_out: one line for each figure that could not be made.
+        left_out: one line for each figure that could not be made, or run that one is without.
         system: a picture of one of the systems, and what it shows.
         runs: distinct runs behind the figures.
         engines: of the runs.

@@ -1,6 +1,6 @@
 """Runs what is missing, makes the figures, writes the files.
 
-A run that fails costs the figures that need it, and no others.
+A run that fails costs the figures that need all of theirs, and others their points.
 """
 
 import csv
@@ -97,7 +97,7 @@ class Plan:
 
 @dataclass(frozen=True)
 class Done:
-    """What came of a command: results, and one line for each figure that was left out."""
+    """What came of a command: results, and one line for each figure or run that was left out."""
 
     results: list[Result]
     left_out: list[str]
@@ -149,16 +149,18 @@ def carry_out(plan: Plan, jobs: int, report: Callable[[Advance], None] | None = 
     made, left_out = list[Made](), list[str]()
     for figure in plan.figures:
         scenes = figure.scenes(plan.quality)
-        failed = next((failures[scene] for scene in scenes if scene in failures), None)
+        failed = [failures[scene] for scene in scenes if scene in failures]
+        lacking = [f"{each.run.folder}: {each.message}" for each in failed]
         try:
-            if failed:
-                raise RunDirectoryError(f"{failed.run.folder}: {failed.message}")
+            if failed and not (figure.partial and len(failed) < len(scenes)):
+                raise RunDirectoryError(lacking[0])
             with matplotlib.rc_context(STYLE):
                 outcome = figure.make(directories, plan.quality)
                 picture = _write_figure(plan.out / f"figure-{figure.number}", outcome)
         except ValueError as error:  # RunDirectoryError, and a fit that its points do not determine
             left_out.append(f"figure {figure.number} left out: {error}")
         else:
+            left_out += [f"figure {figure.number} is without {each}" for each in lacking]
             made.append(Made(figure, outcome, scenes, picture))
     results = [result for each in made for result in each.outcome.results]
     write_results(plan.out / "results.json", results)

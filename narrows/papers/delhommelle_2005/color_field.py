@@ -178,6 +178,9 @@ def _snapshots(
     panels = figure.subplots(1, len(scenes), squeeze=False)[0]
     order = numbers(directories, scenes.values(), PHI)
     for axes, (field, scene), phi in zip(panels, scenes.items(), order, strict=True):
+        if scene not in directories:
+            axes.set(title=f"F = {field:g}: {phi.reason}", xticks=[], yticks=[])
+            continue
         _draw_disks(axes, directories, scene)
         axes.set_title(f"F = {field:g}, $\\phi$ = {phi.number:.2f}", fontsize=9)
     return figure, _table(scenes, {PHI: order}), order
@@ -211,7 +214,8 @@ def _map_of_order(
     shown = axes.scatter(
         field,
         density,
-        c=[each.number for each in order.values()],
+        c=[np.nan if each.value is None else each.value for each in order.values()],
+        plotnonfinite=True,
         s=240,
         marker="s",
         vmin=0,
@@ -219,7 +223,8 @@ def _map_of_order(
         cmap="viridis",
     )
     for (n, f), phi in order.items():
-        axes.annotate(f"{phi.number:.2f}", (f, n), ha="center", va="center", color="w", fontsize=6)
+        label = "stopped" if phi.value is None else f"{phi.value:.2f}"
+        axes.annotate(label, (f, n), ha="center", va="center", color="w", fontsize=6)
     figure.colorbar(shown, label=r"lane order $\phi$ among neighbours")
     axes.margins(0.15)
     table: dict[str, Column] = {
@@ -354,48 +359,56 @@ FIGURES = (
         "Potential energy and pressure against the field, kinetic thermostat, n = 1.03.",
         _figure_1,
         lambda quality: list(_crystals("kinetic", quality).values()),
+        partial=True,
     ),
     PaperFigure(
         "2",
         "Configurational temperature and order parameters, kinetic thermostat, n = 1.03.",
         _figure_2,
         lambda quality: list(_crystals("kinetic", quality).values()),
+        partial=True,
     ),
     PaperFigure(
         "3",
         "Snapshots at n = 0.75, kinetic thermostat; plus filled, minus open.",
         _figure_3,
         lambda quality: list(_broken(quality).values()),
+        partial=True,
     ),
     PaperFigure(
         "4",
         "Lane order by density and field, kinetic thermostat.",
         _figure_4,
         lambda quality: list(_map("kinetic", quality).values()),
+        partial=True,
     ),
     PaperFigure(
         "5",
         "Potential energy and pressure against the field, configurational thermostat, n = 1.03.",
         _figure_5,
         lambda quality: list(_crystals("configurational", quality).values()),
+        partial=True,
     ),
     PaperFigure(
         "6",
         "Kinetic temperature and order parameters, configurational thermostat, n = 1.03.",
         _figure_6,
         lambda quality: list(_crystals("configurational", quality).values()),
+        partial=True,
     ),
     PaperFigure(
         "7",
         "Snapshots at n = 0.75, configurational thermostat; plus filled, minus open.",
         _figure_7,
         lambda quality: list(_clusters(quality).values()),
+        partial=True,
     ),
     PaperFigure(
         "8",
         "Lane order by density and field, configurational thermostat.",
         _figure_8,
         lambda quality: list(_map("configurational", quality).values()),
+        partial=True,
     ),
 )
 

@@ -169,11 +169,13 @@ FIGURES = (
         "Parting of colours, T_conf and unevenness under five noises; the fluid's is hydrodynamic.",
         _figure_noise,
         lambda quality: list(_driven(quality).values()),
+        partial=True,
     ),
     PaperFigure(
         SIZE,
         "Parting of colours and current in the MPC fluid, by the number of disks.",
         _figure_size,
         lambda quality: list(_sizes(quality).values()),
+        partial=True,
     ),
 )

@@ -78,5 +78,6 @@ FIGURES = (
         "Order and configurational temperature, fields up and down again.",
         _figure,
         lambda quality: [*_up(quality), *_down(quality)],
+        partial=True,
     ),
 )

@@ -104,7 +104,9 @@ def ladders_of(scenes: Iterable[Scene], key: str) -> list[list[Scene]]:
 
 
 def number(directories: Directories, scene: Scene, key: str) -> Estimate:
-    """A number of the run's summary, `current` for one."""
+    """A number of the run's summary, `current` for one; none of a run that stopped."""
+    if scene not in directories:
+        return Estimate(None, None, "its run stopped")
     return Estimate.of_json(summary_of(directories[scene].path)[key])
 
 
@@ -114,5 +116,12 @@ def numbers(directories: Directories, scenes: Iterable[Scene], key: str) -> list
 
 
 def largest(values: Sequence[Estimate]) -> Estimate:
-    """The one with the largest value."""
-    return max(values, key=lambda each: -1.0 if each.value is None else each.value)
+    """The one with the largest value; where some are missing a lower bound, without an error."""
+    known = [each for each in values if each.value is not None]
+    if not known:
+        return values[0]
+    top = max(known, key=lambda each: each.number)
+    if len(known) == len(values):
+        return top
+    stopped = f"a lower bound: {len(values) - len(known)} of {len(values)} runs stopped"
+    return Estimate(top.value, None, stopped)

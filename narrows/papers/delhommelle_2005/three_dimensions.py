@@ -219,12 +219,14 @@ FIGURES = (
         "Pressure and lane order of spheres in a field under four thermostats.",
         _figure_9,
         lambda quality: [s for each in _driven(quality).values() for s in each.values()],
+        partial=True,
     ),
     PaperFigure(
         "10",
         "Viscosity against shear rate.",
         _figure_10,
         lambda quality: [s for each in _flow_curve(quality).values() for s in each.values()],
+        partial=True,
     ),
     PaperFigure(
         "11",

@@ -7,10 +7,11 @@ import pytest
 
 import lammps_plugin
 from analysis import RunDirectory
+from analysis.estimate import Estimate
 from lammps_inputs import Scene, make_scene
 from lammps_inputs.deck import check_engine
 from narrows.papers.delhommelle_2005 import PAPER
-from narrows.papers.delhommelle_2005.state_points import UP
+from narrows.papers.delhommelle_2005.state_points import UP, largest
 from narrows.papers.delhommelle_2005.three_dimensions import string_order
 from narrows.papers.figure import Quality
 from narrows.papers.session import Plan
@@ -42,6 +43,25 @@ def test_runs_can_be_run_in_the_time_that_is_promised(quality: Quality, tmp_path
     assert seconds / 2 < HOURS[quality] * 3600
     named = [scene for figure in PAPER.figures for scene in figure.scenes(quality)]
     assert len(plan.runs) < len(named)  # figures share runs
+
+
+@pytest.mark.parametrize("quality", ["quick", "full"])
+def test_a_stopped_run_decides_nothing(quality: Quality) -> None:
+    """A partial figure is drawn, and has no verdict, where runs are missing: here all of them."""
+    for figure in PAPER.figures:
+        if figure.partial:
+            outcome = figure.make({}, quality)
+            assert len({len(column) for column in outcome.table.values()}) == 1
+            assert [result.agrees for result in outcome.results if result.agrees is not None] == []
+
+
+def test_the_largest_of_some_is_a_lower_bound() -> None:
+    low, high, stopped = Estimate(1.0, 0.1), Estimate(2.0, 0.2), Estimate(None, None, "stopped")
+    assert largest([low, high]) == high
+    assert largest([stopped, low, high]) == Estimate(
+        2.0, None, "a lower bound: 1 of 3 runs stopped"
+    )
+    assert largest([stopped]) == stopped
 
 
 def test_full_quality_goes_up_and_down_ladders(tmp_path: Path) -> None:

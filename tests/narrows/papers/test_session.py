@@ -96,6 +96,34 @@ def test_a_failed_run_costs_its_own_figures_only(
     assert not (tmp_path / "figure-2.png").exists()
 
 
+def test_a_partial_figure_is_made_without_the_run_that_failed(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    plan = plan_of(tmp_path)
+    first, second = plan.figures[1].scenes("quick")
+    failed = {plan.run_by_scene[first]}
+
+    def some_fail(
+        runs: Sequence[Run], jobs: int, report: Callable[[Advance], None] | None = None
+    ) -> list[Failure]:
+        others = [run for run in runs if run not in failed]
+        return [*run_all(others, jobs, report), *(Failure(run, "stopped") for run in failed)]
+
+    def make(directories: Directories, quality: Quality) -> Outcome:
+        assert (first in directories, second in directories) == (False, True)
+        return Outcome(one_panel("x", "y")[0], {"seed": [second.seed]}, [])
+
+    monkeypatch.setattr(session, "run_all", some_fail)
+    scenes = plan.figures[1].scenes
+    plan.figures = [PaperFigure("2", "Some of it.", make, scenes, partial=True)]
+    line = f"{plan.run_by_scene[first].folder}: stopped"
+    assert carry_out(plan, jobs=2).left_out == [f"figure 2 is without {line}"]
+    assert (tmp_path / "figure-2.png").exists()
+    assert "figure 2 is without" in (tmp_path / "index.html").read_text()
+    failed.add(plan.run_by_scene[second])
+    assert carry_out(plan, jobs=2).left_out == [f"figure 2 left out: {line}"]
+
+
 def test_a_figure_that_cannot_be_made_costs_itself_only(tmp_path: Path) -> None:
     def make(directories: Directories, quality: Quality) -> Never:
         raise ValueError("every point needs a positive error")
