@@ -10,9 +10,11 @@ from analysis.estimate import Estimate
 from analysis.periodic import wrapped
 from lammps_inputs import Scene
 from narrows.papers.delhommelle_2005.state_points import (
+    ALL,
     CRYSTAL,
     FLUID,
     PHI,
+    columns,
     disks,
     ladders_of,
     largest,
@@ -67,11 +69,7 @@ def _series(
 
 
 def _table(scenes: dict[float, Scene], series: dict[str, list[Estimate]]) -> dict[str, Column]:
-    table: dict[str, Column] = {"field": list(scenes)}
-    for key, values in series.items():
-        table[key] = [each.value for each in values]
-        table[f"{key}_error"] = [each.error for each in values]
-    return table
+    return {"field": list(scenes), **columns(series)}
 
 
 def _energy_and_pressure(
@@ -148,9 +146,7 @@ def _figure_2(directories: Directories, quality: Quality) -> Outcome:
             "positive",
         ),
         compared("2", "phi at F = 6", found[PHI][6.0], PaperNumber.printed("0.8"), HERE),
-        measured(
-            "2", "phi of all disks at F = 6", number(directories, crystals[6.0], "lane_order")
-        ),
+        measured("2", "phi of all disks at F = 6", number(directories, crystals[6.0], ALL)),
         compared(
             "2", "psi_6 at F = 4", found["bond_order"][4.0], PaperNumber.printed("0.59"), HERE
         ),
@@ -230,10 +226,9 @@ def _map_of_order(
     table: dict[str, Column] = {
         "density": density.tolist(),
         "field": field.tolist(),
-        PHI: [each.value for each in order.values()],
-        f"{PHI}_error": [each.error for each in order.values()],
     }
-    return figure, table, order
+    of_all = numbers(directories, scenes.values(), ALL)
+    return figure, table | columns({ALL: of_all, PHI: list(order.values())}), order
 
 
 def _figure_4(directories: Directories, quality: Quality) -> Outcome:

@@ -9,7 +9,7 @@ from matplotlib.figure import Figure
 
 from analysis.estimate import Estimate
 from lammps_inputs import Scene, make_scene
-from narrows.papers.delhommelle_2005.state_points import CRYSTAL, FLUID, PHI, numbers
+from narrows.papers.delhommelle_2005.state_points import CRYSTAL, FLUID, PHI, columns, numbers
 from narrows.papers.drawing import points
 from narrows.papers.figure import Column, Directories, Outcome, PaperFigure, Quality
 from narrows.papers.results import Result, claimed, measured
@@ -67,14 +67,6 @@ def _driven(quality: Quality) -> dict[tuple[str, float, float], Scene]:
     }
 
 
-def _table(series: dict[str, list[Estimate]]) -> dict[str, Column]:
-    columns: dict[str, Column] = {}
-    for key, values in series.items():
-        columns[key] = [each.value for each in values]
-        columns[f"{key}_error"] = [each.error for each in values]
-    return columns
-
-
 def _figure_noise(directories: Directories, quality: Quality) -> Outcome:
     scenes = _driven(quality)
     series = {key: numbers(directories, scenes.values(), key) for key in KEYS}
@@ -98,7 +90,7 @@ def _figure_noise(directories: Directories, quality: Quality) -> Outcome:
         "density": [n for _, n, _ in scenes],
         "field": [f for _, _, f in scenes],
     }
-    return Outcome(figure, table | _table(series), _results(of))
+    return Outcome(figure, table | columns(series), _results(of))
 
 
 def _results(of: dict[str, dict[tuple[str, float, float], Estimate]]) -> list[Result]:
@@ -155,7 +147,7 @@ def _figure_size(directories: Directories, quality: Quality) -> Outcome:
     table: dict[str, Column] = {"particles": list(scenes)}
     return Outcome(
         figure,
-        table | _table(series),
+        table | columns(series),
         [
             measured(SIZE, f"colour_structure over N, hydrodynamic, {number} disks", share)
             for number, share in zip(scenes, shares, strict=True)

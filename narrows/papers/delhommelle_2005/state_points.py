@@ -5,15 +5,16 @@ ladders too, of shorter runs: lanes settle within 1000 time units. For `--quick`
 rest, from a crystal, and is too short for phi. docs/reproduce.md says what that costs.
 """
 
-from collections.abc import Iterable, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 
 from analysis.analyze import summary_of
 from analysis.estimate import Estimate
 from lammps_inputs import Scene, make_scene
-from narrows.papers.figure import Directories, Quality
+from narrows.papers.figure import Column, Directories, Quality
 
 CRYSTAL = 1.03
 FLUID = 0.75
+ALL = "lane_order"  # phi by all disks in a lane
 PHI = "lane_order_near"  # the reading of phi that has the paper's numbers (docs/errata.md)
 LARGEST = 10.0  # field of a configurational run
 UP, DOWN = 1, 2  # seeds
@@ -113,6 +114,15 @@ def number(directories: Directories, scene: Scene, key: str) -> Estimate:
 def numbers(directories: Directories, scenes: Iterable[Scene], key: str) -> list[Estimate]:
     """The same number of several runs."""
     return [number(directories, scene, key) for scene in scenes]
+
+
+def columns(series: Mapping[str, Sequence[Estimate]]) -> dict[str, Column]:
+    """Of a figure's table: each number and its error, by its key."""
+    table: dict[str, Column] = {}
+    for key, values in series.items():
+        table[key] = [each.value for each in values]
+        table[f"{key}_error"] = [each.error for each in values]
+    return table
 
 
 def largest(values: Sequence[Estimate]) -> Estimate:

@@ -1,5 +1,7 @@
 """Spheres: four thermostats in a colour field, and shear. Figs. 9 to 11."""
 
+from collections.abc import Mapping, Sequence
+
 import numpy as np
 from matplotlib.figure import Figure
 
@@ -10,8 +12,10 @@ from analysis.periodic import wrapped
 from analysis.run_directory import RunDirectory
 from lammps_inputs import Scene
 from narrows.papers.delhommelle_2005.state_points import (
+    ALL,
     PHI,
     THERMOSTATS,
+    columns,
     ladders_of,
     largest,
     numbers,
@@ -24,6 +28,7 @@ from narrows.papers.results import PaperNumber, Result, claimed, compared, measu
 
 MIXED = {"kinetic_x": 0.36, "kinetic_y": 0.30, "configurational": 0.19}  # largest phi printed
 STRINGS = (10.0, 20.0)  # rates; Fig. 11 has 10 and 35
+FLOW = ("shear_viscosity", "configurational_temperature", "kinetic_temperature")
 WAVES = 12  # wave numbers across the flow, at most
 
 
@@ -38,23 +43,29 @@ def _driven(quality: Quality) -> dict[str, dict[float, Scene]]:
     }
 
 
+def _table(
+    directories: Directories,
+    scenes: Mapping[str, Mapping[float, Scene]],
+    abscissa: str,
+    keys: Sequence[str],
+) -> dict[str, Column]:
+    """A row for each thermostat and field, or rate."""
+    rows = [(name, at, scene) for name, each in scenes.items() for at, scene in each.items()]
+    names, at, order = zip(*rows, strict=True)
+    series = {key: numbers(directories, order, key) for key in keys}
+    return {"thermostat": names, abscissa: at, **columns(series)}
+
+
 def _figure_9(directories: Directories, quality: Quality) -> Outcome:
     figure = Figure(figsize=(9.4, 4.1), layout="constrained")
     left, right = figure.subplots(1, 2)
-    columns: dict[str, list[float | int | str | None]] = {
-        name: [] for name in ("thermostat", "field", "pressure", PHI, f"{PHI}_error")
-    }
+    driven = _driven(quality)
     order, pressure = dict[str, list[Estimate]](), dict[str, list[Estimate]]()
-    for place, (thermostat, scenes) in enumerate(_driven(quality).items()):
+    for place, (thermostat, scenes) in enumerate(driven.items()):
         order[thermostat] = numbers(directories, scenes.values(), PHI)
         pressure[thermostat] = numbers(directories, scenes.values(), "pressure")
         points(left, list(scenes), pressure[thermostat], place, label=THERMOSTATS[thermostat])
         points(right, list(scenes), order[thermostat], place)
-        rows = zip(scenes, pressure[thermostat], order[thermostat], strict=True)
-        for field, p, phi in rows:
-            values = (thermostat, field, p.value, phi.value, phi.error)
-            for name, value in zip(columns, values, strict=True):
-                columns[name].append(value)
     left.set(xlabel="field $F$", ylabel="pressure, potential part")
     right.set(xlabel="field $F$", ylabel=r"lane order $\phi$ among neighbours", ylim=(0, 1))
     left.legend()
@@ -85,7 +96,7 @@ def _figure_9(directories: Directories, quality: Quality) -> Outcome:
                 "positive",
             ),
         ]
-    return Outcome(figure, columns, results)
+    return Outcome(figure, _table(directories, driven, "field", ("pressure", ALL, PHI)), results)
 
 
 def _rates(thermostat: str, quality: Quality) -> tuple[float, ...]:
@@ -109,18 +120,12 @@ def _flow_curve(quality: Quality) -> dict[str, dict[float, Scene]]:
 
 def _figure_10(directories: Directories, quality: Quality) -> Outcome:
     figure, axes = one_panel("shear rate", "viscosity")
-    columns: dict[str, list[float | int | str | None]] = {
-        name: [] for name in ("thermostat", "rate", "viscosity", "viscosity_error")
-    }
+    curve = _flow_curve(quality)
     found = dict[str, dict[float, Estimate]]()
-    for place, (thermostat, scenes) in enumerate(_flow_curve(quality).items()):
+    for place, (thermostat, scenes) in enumerate(curve.items()):
         values = numbers(directories, scenes.values(), "shear_viscosity")
         found[thermostat] = dict(zip(scenes, values, strict=True))
         points(axes, list(scenes), values, place, label=THERMOSTATS[thermostat])
-        for rate, eta in found[thermostat].items():
-            row = (thermostat, rate, eta.value, eta.error)
-            for name, value in zip(columns, row, strict=True):
-                columns[name].append(value)
     axes.set(xscale="log", ylim=(0, None))
     axes.legend()
     kinetic, configurational = found["kinetic"], found["configurational"]
@@ -157,7 +162,7 @@ def _figure_10(directories: Directories, quality: Quality) -> Outcome:
             "positive",
         ),
     ]
-    return Outcome(figure, columns, results)
+    return Outcome(figure, _table(directories, curve, "rate", FLOW), results)
 
 
 def string_order(run: RunDirectory) -> Estimate:
