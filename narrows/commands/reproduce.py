@@ -27,7 +27,7 @@ def reproduce(
         list[str] | None, typer.Argument(metavar="[FIGURE]...", help="as 4.6; default: all")
     ] = None,
     quick: Annotated[
-        bool, typer.Option("--quick", help="minutes instead of an hour, with larger errors")
+        bool, typer.Option("--quick", help="minutes instead of hours, with larger errors")
     ] = False,
 ) -> None:
     """Compute the figures of a paper again and hold them against its numbers.
