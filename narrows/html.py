@@ -34,6 +34,7 @@ th, td { overflow-wrap: break-word; }
 th { text-align: left; font-weight: 600; border-bottom: 2px solid var(--line); padding: 4px 8px; }
 td { border-bottom: 1px solid var(--line); padding: 5px 8px; vertical-align: top; }
 td.number { white-space: nowrap; font-variant-numeric: tabular-nums; }
+.stack { margin-bottom: 14px; }
 .note { color: var(--soft); font-size: 12.5px; }
 .claim { color: var(--claim); }
 .verdict { font-weight: 600; white-space: nowrap; }
@@ -44,7 +45,10 @@ pre { white-space: pre-wrap; font-size: 12.5px; margin: 0; }
 @media (max-width: 600px) { main { padding: 6px; } section { padding: 10px; }
   table { font-size: 12.5px; } th, td { padding: 4px 3px; }
   td:first-child { overflow-wrap: anywhere; }
-  td.number { white-space: normal; } }
+  td.number { white-space: normal; }
+  .stack tr:first-child { display: none; } .stack tr { display: block; margin-bottom: 10px; }
+  .stack td { display: flex; justify-content: space-between; gap: 12px; text-align: right; }
+  .stack td::before { content: attr(data-name); font-weight: 600; text-align: left; } }
 """
 
 
@@ -79,6 +83,18 @@ def table(headings: Sequence[str], rows: Iterable[Sequence[str]]) -> str:
     )
     first = f"<tr>{head}</tr>" if head else ""
     return f'<div class="scroll"><table>{first}{body}</table></div>'
+
+
+def wide_table(headings: Sequence[str], rows: Iterable[Sequence[str]]) -> str:
+    """A table whose rows a narrow page shows as lists of names and values."""
+    named = (
+        [
+            f'<td data-name="{escape(name)}"{cell[3:] if cell[:3] == "<td" else f">{cell}</td>"}'
+            for name, cell in zip(headings, row, strict=True)
+        ]
+        for row in rows
+    )
+    return f'<div class="stack">{table(headings, named)}</div>'
 
 
 def number(value: float | None, error: float | None) -> str:

@@ -21,6 +21,7 @@ from run_files.writing import replace_text
 
 NAME = "report.html"
 SWEEP_FIGURE = "sweep.png"
+ABREAST = 6  # numbers of a sweep beside its fields, on a screen
 
 
 def report_run(directory: Path) -> Path:
@@ -64,7 +65,8 @@ def report_sweep(directory: Path, jobs: int) -> Path:
     if figure:
         figure.savefig(directory / SWEEP_FIGURE, dpi=120)
         says = f"Each number of the analysis against {', '.join(table.fields)}, with error bars."
-        sections.append(_section("Pictures", html.picture(directory / SWEEP_FIGURE, says)))
+        shown = html.picture(directory / SWEEP_FIGURE, says)
+        sections.append(_section("Pictures", f'<div class="pair wide">{shown}</div>'))
     runs = ", ".join(f"<code>{escape(each)}</code>" for each in sweep.runs)
     sections += [
         _section("The scene of the first run", _fields(manifest)),
@@ -119,15 +121,23 @@ def _pictures(directory: Path, figures: Sequence[str], left_out: Sequence[str]) 
 
 
 def _table(table: SweepTable) -> str:
+    """As many tables as a page is too narrow for, each with the fields of the points."""
+    return "".join(
+        _part(table, table.quantities[first : first + ABREAST])
+        for first in range(0, len(table.quantities), ABREAST)
+    )
+
+
+def _part(table: SweepTable, quantities: Sequence[str]) -> str:
     rows = [
         (
             *(escape(str(row[name])) for name in (*table.fields, "repeats")),
-            *(html.number(row[name], row[f"{name}_error"]) for name in table.quantities),
+            *(html.number(row[name], row[f"{name}_error"]) for name in quantities),
         )
         for row in table.rows
     ]
-    quantities = (name.replace("_", " ") for name in table.quantities)
-    return html.table((*table.fields, "repeats", *quantities), rows)
+    names = (name.replace("_", " ") for name in quantities)
+    return html.wide_table((*table.fields, "repeats", *names), rows)
 
 
 def _fields(manifest: Manifest) -> str:

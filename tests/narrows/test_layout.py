@@ -21,7 +21,8 @@ from narrows.papers.figure import Outcome, PaperFigure
 from narrows.papers.page import Made, Report, write_page
 from narrows.papers.results import PaperNumber, Result
 from narrows.papers.session import Plan, carry_out
-from narrows.report import report_run
+from narrows.report import report_run, report_sweep
+from srd_driver import Simulation, sweep_definition
 from tests.narrows.papers.tiny import paper
 
 BROWSERS = ("chromium", "chromium-browser", "google-chrome", "chrome")
@@ -86,7 +87,7 @@ onload = () => {
 
 @pytest.fixture(scope="module")
 def pages(tmp_path_factory: pytest.TempPathFactory) -> dict[str, Path]:
-    """A page made by runs, that of one of these runs, and those of all papers."""
+    """A page made by runs, that of one of these runs, that of a sweep, and those of all papers."""
     out = tmp_path_factory.mktemp("paper")
     whole = paper()
     plan = Plan(whole, whole.figures, "quick", out)
@@ -94,8 +95,20 @@ def pages(tmp_path_factory: pytest.TempPathFactory) -> dict[str, Path]:
     return {
         "tiny": out / "index.html",
         "run": report_run(plan.runs[0].folder),
+        "sweep": sweep_page(tmp_path_factory.mktemp("sweep")),
         **{name: paper_page(name, tmp_path_factory.mktemp(name)) for name in papers()},
     }
+
+
+def sweep_page(out: Path) -> Path:
+    """The page of a sweep over two fields."""
+    fields = {"length": 20, "duration": 6, "equilibration": 1, "sampling_interval": 0.15}
+    over = {"colloids": [1, 2], "gravity": [0.05, 0.1]}
+    sweep = sweep_definition.store(sweep_definition.plan(out, "channel", fields, over, 1))
+    for run in sweep.runs:
+        with Simulation(run.scene, run.engine, run.folder) as simulation:
+            simulation.finish()
+    return report_sweep(out, jobs=1)
 
 
 def paper_page(name: str, out: Path) -> Path:
@@ -179,7 +192,7 @@ def look(page: Path, scheme: str, profile: Path) -> tuple[dict[int, dict[str, An
 
 
 @pytest.mark.parametrize("scheme", SCHEMES)
-@pytest.mark.parametrize("name", ["tiny", "run", *papers()])
+@pytest.mark.parametrize("name", ["tiny", "run", "sweep", *papers()])
 def test_the_layout_of_a_page(
     name: str, scheme: str, pages: dict[str, Path], tmp_path: Path
 ) -> None:
@@ -192,7 +205,7 @@ def test_the_layout_of_a_page(
         assert found["hidden"] == []
         assert found["pale"] == []
         assert found["dark"] == (scheme == "dark")
-        assert found["pictures"] >= 2
+        assert found["pictures"] >= (1 if name == "sweep" else 2)
         assert found["broken"] == []
         assert found["silent"] == 0
         assert found["links"] == 0
