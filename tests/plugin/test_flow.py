@@ -186,6 +186,9 @@ def test_it_is_drawn_and_exported(tmp_path: Path, command: Run) -> None:
     velocity = arrays["velocity"].reshape(-1, 3)
     np.testing.assert_array_equal(velocity[:, 1], mean.velocity[0, ..., 1].ravel(order="F"))
     assert not velocity[:, 2].any()
+    named = image[0][0].find("*[@Name='velocity']")
+    assert named is not None  # OVITO selects components by name
+    assert [named.attrib[f"ComponentName{n}"] for n in range(3)] == ["X", "Y", "Z"]
     refused = command("narrows", "export", run, tmp_path / "flow.csv", succeed=False)
     assert "must end with .vti or .npz" in refused.stderr
 
