@@ -75,17 +75,12 @@ def _words(numbers: Sequence[float]) -> str:
 def _add(cells: ElementTree.Element, name: str, values: Array) -> None:
     """Values of each bin, (nx, ny, ..., components), written with x the fastest."""
     axes = values.ndim - 1
-    vector = values.shape[-1] > 1
     ordered = np.ascontiguousarray(values.transpose(*reversed(range(axes)), axes), dtype="<f8")
     content = ordered.tobytes()
-    array = ElementTree.SubElement(
-        cells,
-        "DataArray",
-        Name=name,
-        type="Float64",
-        NumberOfComponents=str(values.shape[-1]),
-        format="binary",
-        **{f"ComponentName{n}": axis for n, axis in enumerate("XYZ"[: values.shape[-1]]) if vector},
-    )
+    array = ElementTree.SubElement(cells, "DataArray", Name=name, type="Float64", format="binary")
+    array.set("NumberOfComponents", str(values.shape[-1]))
+    if values.shape[-1] > 1:
+        for n, axis in enumerate("XYZ"):
+            array.set(f"ComponentName{n}", axis)
     length = len(content).to_bytes(8, "little")
     array.text = base64.b64encode(length + content).decode()

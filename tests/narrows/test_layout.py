@@ -103,7 +103,7 @@ def pages(tmp_path_factory: pytest.TempPathFactory) -> dict[str, Path]:
 def sweep_page(out: Path) -> Path:
     """The page of a sweep over two fields."""
     fields = {"length": 20, "duration": 6, "equilibration": 1, "sampling_interval": 0.15}
-    over = {"colloids": [1, 2], "gravity": [0.05, 0.1]}
+    over: dict[str, list[Any]] = {"colloids": [1, 2], "gravity": [0.05, 0.1]}
     sweep = sweep_definition.store(sweep_definition.plan(out, "channel", fields, over, 1))
     for run in sweep.runs:
         with Simulation(run.scene, run.engine, run.folder) as simulation:
