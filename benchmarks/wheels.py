@@ -1,6 +1,6 @@
 """The plugin of two installations, in turn: a wheel for every machine against a build for this one.
 
-    python benchmarks/wheels.py LMP [--pairs 7]
+    python benchmarks/wheels.py LMP [--pairs 7] [--page docs/performance.md]
 
 LMP is the `lmp` of the other environment, where narrows is built for this machine only:
 
@@ -18,7 +18,13 @@ from pathlib import Path
 
 import numpy as np
 
-DECKS = {"mpc_channel": 12000, "mpc_bulk2d": 3000, "mpc_bulk3d": 1000}  # steps
+from narrows.markdown import replace_block, table
+
+DECKS = {  # steps, and the deck in words
+    "mpc_channel": (12000, "channel of 31 colloids"),
+    "mpc_bulk2d": (3000, "fluid, 2D"),
+    "mpc_bulk3d": (1000, "fluid, 3D"),
+}
 
 
 def processor_seconds(lmp: Path, deck: Path, steps: int) -> float:
@@ -39,14 +45,15 @@ def processor_seconds(lmp: Path, deck: Path, steps: int) -> float:
 
 
 def main() -> None:
-    """Print a row of markdown for each deck."""
+    """Print the table, or put it into a page."""
     parser = argparse.ArgumentParser(description=__doc__)
     parser.add_argument("lmp", type=Path)
     parser.add_argument("--pairs", type=int, default=7)
+    parser.add_argument("--page", type=Path, help="a page with the marks of `wheels`")
     given = parser.parse_args()
     mine, other = Path(sys.executable).with_name("lmp"), given.lmp.absolute()
-    print("| deck | the default build over the native one | quartiles |\n|---|---|---|")
-    for name, steps in DECKS.items():
+    rows = []
+    for name, (steps, words) in DECKS.items():
         deck = Path(__file__).parent.absolute() / "decks" / f"{name}.lmp"
         start = {lmp: processor_seconds(lmp, deck, 1) for lmp in (mine, other)}
         ratios = []
@@ -55,7 +62,12 @@ def main() -> None:
             spent = {lmp: processor_seconds(lmp, deck, steps) - start[lmp] for lmp in order}
             ratios.append(spent[mine] / spent[other])
         low, middle, high = np.quantile(ratios, [0.25, 0.5, 0.75])
-        print(f"| {name} | {middle:.3f} | {low:.3f} to {high:.3f} |", flush=True)
+        rows.append((words, f"{middle:.3f}", f"{low:.3f} to {high:.3f}"))
+    text = table(("deck", "the default build over the native one", "quartiles"), rows)
+    if given.page:
+        replace_block(given.page, "wheels", text)
+    else:
+        print(text)
 
 
 if __name__ == "__main__":
