@@ -12,6 +12,7 @@
 #include "update.h"
 
 #include <algorithm>
+#include <climits>
 #include <cmath>
 
 using namespace LAMMPS_NS;
@@ -117,6 +118,8 @@ template <int D> void FixMPC<D>::make_solver(double particles)
     box[a] = domain->prd[a];
     periodic[a] = domain->periodicity[a];
   }
+  if (particles > INT_MAX && given_.hydro == "shuffle")
+    error->all(FLERR, "fix mpc: hydro shuffle: {} particles are more than {}", particles, INT_MAX);
   const mpc::Grid<D> grid(box, periodic, given_.edge);
   interval_ = update->dt * given_.every;
 

@@ -32,7 +32,7 @@ std::vector<Particle<D>> MpcDump<D>::chosen(const mpc::Fluid<D> &fluid) const
 {
   std::vector<Particle<D>> mine;
   for (int i = 0; i < fluid.size(); ++i)
-    if (fluid.id[i] % given_.one_in == 0) mine.push_back(fluid.particle(i));
+    if (fluid.number(i) % given_.one_in == 0) mine.push_back(fluid.particle(i));
   if (comm->nprocs == 1) return mine;
   constexpr int record = sizeof(Particle<D>) / sizeof(double);
   const int size = static_cast<int>(mine.size()) * record;
