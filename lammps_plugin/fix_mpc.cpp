@@ -1,7 +1,6 @@
 #include "fix_mpc.h"
 
 #include "core/cell_coupling.h"
-#include "core/fluid_file.h"
 #include "mpc_warnings.h"
 
 #include "atom.h"
@@ -66,7 +65,7 @@ template <int D> void FixMPC<D>::init()
     error->all(FLERR, "fix mpc: the box must not change");
   if (!solver_) {
     const bool loading = !given_.load_file.empty();
-    make_solver(loading ? MpcState<D>::particles_in(*error, given_.load_file) : given_.particles);
+    make_solver(loading ? MpcState<D>::particles_in(lmp, given_.load_file) : given_.particles);
     check_processes();
     if (loading)
       state_->load(given_.load_file);
@@ -151,7 +150,7 @@ template <int D> void FixMPC<D>::make_solver(double particles)
     method.random_solvent = std::make_unique<mpc::BathSolvent<D>>(given_.temperature);
   method.coupling = make_coupling(field, method.walls.get());
   solver_ = std::make_unique<mpc::Solver<D>>(grid, std::move(method), processes_);
-  state_ = std::make_unique<MpcState<D>>(lmp, given_, *solver_);
+  state_ = std::make_unique<MpcState<D>>(lmp, given_, *solver_, processes_);
   colloids_.set_coupling(coupling());
 }
 
