@@ -6,6 +6,8 @@ from pathlib import Path
 import numpy as np
 import pytest
 
+from lammps_inputs import make_scene
+from srd_driver import RunError, Simulation
 from tests.conftest import Run
 from tests.plugin.fluid import read_fluid
 
@@ -120,6 +122,34 @@ def test_a_damaged_part_is_named_in_one_line(
         (tmp_path / BESIDE).write_bytes(content)
     said = run(tmp_path, deck(start), 2, command, succeed=False)
     assert said.count(complaint) == 1, said
+
+
+def test_a_run_keeps_the_fluid_beside_its_checkpoint(tmp_path: Path) -> None:
+    fields = {"length": 110, "width": 100, "gravity": 1e-5, "sampling_interval": 0.5}
+    scene = make_scene("poiseuille", equilibration=0, duration=2, **fields)
+    with Simulation(scene, "mpc", tmp_path / "whole") as whole:
+        whole.finish()
+    parts = tmp_path / "parts"
+    with Simulation(scene, "mpc", parts, checkpoint_interval=0.5) as run:
+        run.run(1)
+    kept = {path.name for path in parts.glob("checkpoint.*")}
+    assert kept == {"checkpoint.10.restart", "checkpoint.10.restart.fluid"}
+    for left in ("checkpoint.15.restart", "checkpoint.15.restart.fluid"):  # by a kill
+        (parts / left).write_bytes(b"half")
+    parts = parts.rename(tmp_path / "moved")
+
+    file = parts / "checkpoint.10.restart.fluid"
+    content = file.read_bytes()
+    file.write_bytes(content[:-1])
+    with pytest.raises(RunError, match=f"{file.name}: .* bytes do not hold") as error:
+        Simulation(scene, "mpc", parts, resume=True)
+    assert "\n" not in str(error.value)
+    file.write_bytes(content)
+    with Simulation(scene, "mpc", parts, resume=True) as run:
+        assert {path.name for path in parts.glob("checkpoint.*")} == kept
+        run.finish()
+    for output in ("observables.dat", "fluid_profile.dat"):
+        assert (parts / output).read_bytes() == (tmp_path / "whole" / output).read_bytes()
 
 
 @pytest.mark.skipif(not IO.exists(), reason="counts what processes read, as Linux tells")
