@@ -1,0 +1,132 @@
+"""What each process of fix mpc tells others at a collision, counted in MPI's own calls.
+
+    python benchmarks/exchange.py
+
+Runs small boxes on 8 and 27 processes, the same share for each, for two numbers of collisions; the
+difference is that of a collision, of the process that sent most. However few cores there are, the
+counts are the same. Needs a C compiler (exchange.c).
+"""
+
+import os
+import subprocess
+import sys
+import sysconfig
+import tempfile
+from pathlib import Path
+
+HERE = Path(__file__).parent.absolute()
+COMMANDS = Path(sys.executable).parent
+COLLISIONS = (4, 12)  # of the two runs
+
+BULK = """
+units lj
+dimension 3
+boundary p {walls} p
+region box block 0 {n} 0 {n} 0 {n}
+create_box 1 box
+mass 1 1
+neigh_modify delay 0 every 1 check no
+timestep 0.1
+fix fluid all mpc 1 NULL 1 1 7 create {particles} density 10 axis random tstat {tstat}
+run ${{collisions}}
+"""
+SUSPENSION = """
+units lj
+atom_style sphere
+boundary p p p
+atom_modify sort 0 0
+region box block 0 {n} 0 {n} 0 {n}
+create_box 1 box
+lattice sc {spacing}
+create_atoms 1 box
+set type 1 diameter {diameter}
+set type 1 mass {mass}
+pair_style zero 4.2
+pair_coeff * *
+neighbor 1.0 bin
+neigh_modify delay 0 every 20 check no
+comm_modify cutoff 7.5
+timestep 0.005
+velocity all create 1.0 87287 loop geom
+fix motion all nve{sphere}
+fix fluid all mpc 20 all 1 1 7 create {particles} {coupling}
+variable steps equal 20*${{collisions}}
+run ${{steps}}
+"""
+
+
+def bulk(n: int, walls: str = "p", tstat: str = "none") -> str:
+    """A fluid of 10 particles a cell in a cube."""
+    return BULK.format(n=n, particles=10 * n**3, walls=walls, tstat=tstat)
+
+
+def suspension(n: int, coupling: str) -> str:
+    """One colloid to each 8^3 cells."""
+    small = coupling.startswith("collide")
+    return SUSPENSION.format(
+        n=n,
+        particles=5 * n**3,
+        spacing=8,
+        diameter=1.0 if small else 4.0,
+        mass=30 if small else 330,
+        sphere="/sphere",
+        coupling=coupling,
+    )
+
+
+SCENES = {
+    "fluid, 16^3 cells a process": lambda along: bulk(16 * along),
+    "fluid, 8^3 cells": lambda along: bulk(8 * along),
+    "slit, 16^3 cells, `tstat layer`": lambda along: bulk(16 * along, "f", "layer"),
+    "8 colloids, `force`, 16^3 cells": lambda along: suspension(16 * along, "force 1 1.0 2.0"),
+    "8 colloids, `reflect`, 16^3 cells": lambda along: suspension(16 * along, "reflect 1 2 entry"),
+    "8 colloids, `collide`, 16^3 cells": lambda along: suspension(16 * along, "collide yes"),
+}
+
+
+def counted(deck: str, processes: int, collisions: int, counter: Path) -> dict[str, list[float]]:
+    """Calls and bytes of the process that sent most, by kind of call and who made it."""
+    with tempfile.TemporaryDirectory() as folder:
+        (Path(folder) / "in.deck").write_text(deck)
+        words = [str(COMMANDS / "mpirun"), "-np", str(processes), str(COMMANDS / "lmp")]
+        words += ["-in", "in.deck", "-log", "none", "-var", "collisions", str(collisions)]
+        loaded = os.environ | {"LD_PRELOAD": str(counter)}
+        done = subprocess.run(words, cwd=folder, env=loaded, capture_output=True, text=True)
+    if done.returncode:
+        raise SystemExit(done.stdout + done.stderr)
+    lines = [line.split() for line in done.stdout.splitlines() if line.startswith("exchange ")]
+    return {f"{who} {what}": [float(calls), float(size)] for _, who, what, calls, size in lines}
+
+
+def main() -> None:
+    """Print a row of markdown for each scene and number of processes."""
+    environment = Path(sysconfig.get_path("data"))
+    with tempfile.TemporaryDirectory() as folder:
+        counter = Path(folder) / "exchange.so"
+        library = environment / "lib"
+        words = ["cc", "-O2", "-shared", "-fPIC", str(HERE / "exchange.c"), "-o", str(counter)]
+        words += [f"-I{environment / 'include'}", f"-L{library}", "-lmpi", f"-Wl,-rpath,{library}"]
+        subprocess.run([*words, "-ldl"], check=True)
+        print("| scene | processes | by | sendrecv | their bytes | all processes | their bytes |")
+        print("|---|---|---|---|---|---|---|")
+        for name, deck in SCENES.items():
+            for along in (2, 3):
+                few, many = (counted(deck(along), along**3, n, counter) for n in COLLISIONS)
+                each = {
+                    kind: [
+                        (last - first) / (COLLISIONS[1] - COLLISIONS[0])
+                        for last, first in zip(many[kind], few[kind], strict=True)
+                    ]
+                    for kind in many
+                }
+                for who in ("plugin", "lammps"):
+                    mine = {kind.split()[1]: row for kind, row in each.items() if who in kind}
+                    to_one = [mine.pop(kind, [0, 0]) for kind in ("sendrecv", "send")]
+                    numbers = [sum(column) for column in zip(*to_one, strict=True)]
+                    numbers += [sum(row[column] for row in mine.values()) for column in (0, 1)]
+                    cells = " | ".join(f"{number:.4g}" for number in numbers)
+                    print(f"| {name} | {along**3} | {who} | {cells} |", flush=True)
+
+
+if __name__ == "__main__":
+    main()
