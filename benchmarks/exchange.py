@@ -1,12 +1,13 @@
 """What each process of fix mpc tells others at a collision, counted in MPI's own calls.
 
-    python benchmarks/exchange.py
+    python benchmarks/exchange.py [--only WORD]
 
 Runs small boxes on 8 and 27 processes, the same share for each, for two numbers of collisions; the
 difference is that of a collision, of the process that sent most. However few cores there are, the
 counts are the same. Needs a C compiler (exchange.c).
 """
 
+import argparse
 import os
 import subprocess
 import sys
@@ -16,7 +17,8 @@ from pathlib import Path
 
 HERE = Path(__file__).parent.absolute()
 COMMANDS = Path(sys.executable).parent
-COLLISIONS = (4, 12)  # of the two runs
+COLLISIONS = (4, 12)  # of the two runs of a fluid
+COLLISIONS_OF_COLLOIDS = (1, 4)
 
 BULK = """
 units lj
@@ -44,13 +46,13 @@ set type 1 mass {mass}
 pair_style zero 4.2
 pair_coeff * *
 neighbor 1.0 bin
-neigh_modify delay 0 every 20 check no
+neigh_modify delay 0 every 4 check no
 comm_modify cutoff 7.5
-timestep 0.005
+timestep 0.025
 velocity all create 1.0 87287 loop geom
 fix motion all nve{sphere}
-fix fluid all mpc 20 all 1 1 7 create {particles} {coupling}
-variable steps equal 20*${{collisions}}
+fix fluid all mpc 4 all 1 1 7 create {particles} {coupling}
+variable steps equal 4*${{collisions}}
 run ${{steps}}
 """
 
@@ -78,9 +80,15 @@ SCENES = {
     "fluid, 16^3 cells a process": lambda along: bulk(16 * along),
     "fluid, 8^3 cells": lambda along: bulk(8 * along),
     "slit, 16^3 cells, `tstat layer`": lambda along: bulk(16 * along, "f", "layer"),
-    "8 colloids, `force`, 16^3 cells": lambda along: suspension(16 * along, "force 1 1.0 2.0"),
-    "8 colloids, `reflect`, 16^3 cells": lambda along: suspension(16 * along, "reflect 1 2 entry"),
-    "8 colloids, `collide`, 16^3 cells": lambda along: suspension(16 * along, "collide yes"),
+    "8 colloids, `force`, 16^3 cells, 4 steps": lambda along: suspension(
+        16 * along, "force 1 1.0 2.0"
+    ),
+    "8 colloids, `reflect`, 16^3 cells, 4 steps": lambda along: suspension(
+        16 * along, "reflect 1 2 entry"
+    ),
+    "8 colloids, `collide`, 16^3 cells, 4 steps": lambda along: suspension(
+        16 * along, "collide yes"
+    ),
 }
 
 
@@ -100,6 +108,9 @@ def counted(deck: str, processes: int, collisions: int, counter: Path) -> dict[s
 
 def main() -> None:
     """Print a row of markdown for each scene and number of processes."""
+    parser = argparse.ArgumentParser(description=__doc__)
+    parser.add_argument("--only", default="", help="scenes with this in their name")
+    only = parser.parse_args().only
     environment = Path(sysconfig.get_path("data"))
     with tempfile.TemporaryDirectory() as folder:
         counter = Path(folder) / "exchange.so"
@@ -110,12 +121,15 @@ def main() -> None:
         print("| scene | processes | by | sendrecv | their bytes | all processes | their bytes |")
         print("|---|---|---|---|---|---|---|")
         for name, deck in SCENES.items():
-            for along in (2, 3):
-                few, many = (counted(deck(along), along**3, n, counter) for n in COLLISIONS)
+            if only not in name:
+                continue
+            first, last = COLLISIONS_OF_COLLOIDS if "colloids" in name else COLLISIONS
+            for along in (2,) if "colloids" in name else (2, 3):
+                few, many = (counted(deck(along), along**3, n, counter) for n in (first, last))
                 each = {
                     kind: [
-                        (last - first) / (COLLISIONS[1] - COLLISIONS[0])
-                        for last, first in zip(many[kind], few[kind], strict=True)
+                        (all_of_many - all_of_few) / (last - first)
+                        for all_of_many, all_of_few in zip(many[kind], few[kind], strict=True)
                     ]
                     for kind in many
                 }
