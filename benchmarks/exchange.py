@@ -1,24 +1,34 @@
 """What each process of fix mpc tells others at a collision, counted in MPI's own calls.
 
-    python benchmarks/exchange.py [--only WORD]
+    python benchmarks/exchange.py [--only WORD | --expect]
 
 Runs small boxes on 8 and 27 processes, the same share for each, for two numbers of collisions; the
 difference is that of a collision, of the process that sent most. However few cores there are, the
 counts are the same. Needs a C compiler (exchange.c).
+
+`--expect` prints what comes of it on many cores: share of the time that a core computes.
 """
 
 import argparse
+import math
 import os
 import subprocess
 import sys
 import sysconfig
 import tempfile
+from collections.abc import Callable
 from pathlib import Path
 
 HERE = Path(__file__).parent.absolute()
 COMMANDS = Path(sys.executable).parent
 COLLISIONS = (4, 12)  # of the two runs of a fluid
 COLLISIONS_OF_COLLOIDS = (1, 4)
+
+EXCHANGED = 505.0  # bytes of a collision for each cell of a face: first scene, 27 processes
+MESSAGES, AGREEMENTS = 12, 5  # of a collision, with a thermostat of layers
+UPDATES = 9.3e7  # particles a second of a core in 3D (docs/fix_mpc.md)
+LATENCY = 2e-6  # of a message, assumed [s]
+BANDWIDTH = 25e9 / 64  # of a core's part of its node's network, assumed [bytes/s]
 
 BULK = """
 units lj
@@ -39,7 +49,7 @@ boundary p p p
 atom_modify sort 0 0
 region box block 0 {n} 0 {n} 0 {n}
 create_box 1 box
-lattice sc {spacing}
+lattice sc 0.001953125
 create_atoms 1 box
 set type 1 diameter {diameter}
 set type 1 mass {mass}
@@ -68,7 +78,6 @@ def suspension(n: int, coupling: str) -> str:
     return SUSPENSION.format(
         n=n,
         particles=5 * n**3,
-        spacing=8,
         diameter=1.0 if small else 4.0,
         mass=30 if small else 330,
         sphere="/sphere",
@@ -76,7 +85,7 @@ def suspension(n: int, coupling: str) -> str:
     )
 
 
-SCENES = {
+SCENES: dict[str, Callable[[int], str]] = {
     "fluid, 16^3 cells a process": lambda along: bulk(16 * along),
     "fluid, 8^3 cells": lambda along: bulk(8 * along),
     "slit, 16^3 cells, `tstat layer`": lambda along: bulk(16 * along, "f", "layer"),
@@ -106,11 +115,37 @@ def counted(deck: str, processes: int, collisions: int, counter: Path) -> dict[s
     return {f"{who} {what}": [float(calls), float(size)] for _, who, what, calls, size in lines}
 
 
+def efficiency(particles: float, cores: int, leaving: float) -> float:
+    """Share of the time that a core with so many particles computes.
+
+    `leaving` is the share of the bytes that leave its node. Numbers in a sub-domain vary, and all
+    wait for the fullest: sqrt(2 ln cores) standard deviations above the mean.
+    """
+    computing = particles / UPDATES
+    fullest = computing * (1 + math.sqrt(2 * math.log(cores) / particles))
+    agreeing = AGREEMENTS * math.log2(cores) * LATENCY
+    sending = MESSAGES * LATENCY + leaving * EXCHANGED * (particles / 10) ** (2 / 3) / BANDWIDTH
+    return float(computing / (fullest + agreeing + sending))
+
+
+def print_expectations() -> None:
+    """Print a row of markdown for each number of particles."""
+    print("| particles a core | cores | all bytes leave the node | a quarter |\n|---|---|---|---|")
+    for particles in (1e4, 1e5, 1e6, 1e7):
+        for cores in (100, 10_000):
+            shares = [f"{efficiency(particles, cores, leaving):.2f}" for leaving in (1, 0.25)]
+            print(f"| {particles:.0e} | {cores} | " + " | ".join(shares) + " |")
+
+
 def main() -> None:
     """Print a row of markdown for each scene and number of processes."""
     parser = argparse.ArgumentParser(description=__doc__)
     parser.add_argument("--only", default="", help="scenes with this in their name")
-    only = parser.parse_args().only
+    parser.add_argument("--expect", action="store_true")
+    given = parser.parse_args()
+    if given.expect:
+        print_expectations()
+        return
     environment = Path(sysconfig.get_path("data"))
     with tempfile.TemporaryDirectory() as folder:
         counter = Path(folder) / "exchange.so"
@@ -121,10 +156,10 @@ def main() -> None:
         print("| scene | processes | by | sendrecv | their bytes | all processes | their bytes |")
         print("|---|---|---|---|---|---|---|")
         for name, deck in SCENES.items():
-            if only not in name:
+            if given.only not in name:
                 continue
             first, last = COLLISIONS_OF_COLLOIDS if "colloids" in name else COLLISIONS
-            for along in (2,) if "colloids" in name else (2, 3):
+            for along in (2, 3) if "`force`" not in name and "`reflect`" not in name else (2,):
                 few, many = (counted(deck(along), along**3, n, counter) for n in (first, last))
                 each = {
                     kind: [
