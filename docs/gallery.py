@@ -49,8 +49,8 @@ ENTRIES: tuple[Entry, ...] = (
         "chain",
         "A chain settles in a slit",
         THESIS,
-        "31 colloids between two walls, pulled to the right, 600 time units after they were "
-        "released as a straight chain: at the head, dark, they zigzag; the tail spreads.",
+        "31 colloids, pulled to the right, 600 time units after their release as a straight "
+        "chain: at the head, dark, they zigzag; the tail spreads.",
         (
             "narrows run channel --set length=300 --set colloids=31 --set spacing=5 "
             "--set equilibration=0 --set duration=600 --set sampling_interval=3 --out runs/chain",
@@ -62,8 +62,8 @@ ENTRIES: tuple[Entry, ...] = (
         "zigzag",
         "The zigzag grows at the head",
         THESIS,
-        "Of the same run, below: how far each colloid stands off its neighbours' mean height, "
-        "against time; above, the mean over the chain with alternating signs.",
+        "The same run. Below: how far each colloid stands off its neighbours' mean height, "
+        "against time; above: the mean over the chain with alternating signs.",
         ("narrows analyze runs/chain",),
         "runs/chain/zigzag.png",
     ),
@@ -71,10 +71,9 @@ ENTRIES: tuple[Entry, ...] = (
         "two_flows",
         "The flow about a settling colloid, with and without hydrodynamics",
         THESIS,
-        "Stream lines over the speed of the fluid, in the laboratory, about one colloid that is "
-        "pulled to the right between walls. With hydrodynamics the colloid takes the fluid along; "
-        "without, velocities are interchanged between all particles at each collision, and what "
-        "is left is noise.",
+        "Stream lines over the speed of the fluid, in the laboratory, about a colloid that is "
+        "pulled to the right. With hydrodynamics it takes the fluid along; without, all particles "
+        "interchange velocities at each collision, which leaves noise.",
         (
             "narrows run channel --set colloids=1 --set gravity=0.3 --set width=14 --set length=56 "
             "--set duration=3000 --set flow_interval=100 --set flow_bin=1 --set flow_around=1 "
@@ -90,7 +89,7 @@ ENTRIES: tuple[Entry, ...] = (
         "poiseuille",
         "Poiseuille flow",
         THESIS,
-        "The velocity of a fluid that gravity pulls through a slit 25 cells wide, with standard "
+        "Velocity of a fluid that gravity pulls through a slit 25 cells wide, with standard "
         "errors, and the parabola.",
         (
             "narrows run poiseuille --set gravity=0.002 --out runs/slit",
@@ -102,8 +101,8 @@ ENTRIES: tuple[Entry, ...] = (
         "shock",
         "A shock in a lattice gas",
         THESIS,
-        "Charge on 10 000 sites against time: a one-sided shock walks at random to the left. "
-        "Black: its place, fitted to 20 such walks.",
+        "Charge on 10 000 sites against time: a one-sided shock walks to the left. Black: its "
+        "place, fitted to 20 such walks.",
         (
             "narrows lattice simulate docs/examples/lattice/one_sided.toml --sites 10000 "
             "--replicas 20 --time 2000 --samples 81 --from 5500 --seed 1 --figures shock",
@@ -114,8 +113,8 @@ ENTRIES: tuple[Entry, ...] = (
         "potentials",
         "What clay particles feel of each other",
         CLAY,
-        "DLVO potentials of spheres of alumina in water by surface potential and screening, with "
-        "the numbers that the paper prints.",
+        "DLVO potentials of alumina spheres in water by surface potential and screening, with "
+        "the paper's numbers.",
         ("narrows reproduce hecht-2005 1 --quick --out runs/clay",),
         "runs/clay/figure-1.png",
     ),
@@ -143,8 +142,8 @@ ENTRIES: tuple[Entry, ...] = (
         "sheared",
         "A suspension between moving walls",
         CLAY,
-        "The velocity of the colloids between two walls across z, of which the upper moves to the "
-        "right and the lower to the left.",
+        "Velocity of the colloids between two walls across z, the upper moving to the right, the "
+        "lower to the left.",
         (
             "narrows run claylike --set boundaries=bottom --set shear_rate=0.02 --set duration=120 "
             "--set equilibration=30 --out runs/sheared",
@@ -156,8 +155,8 @@ ENTRIES: tuple[Entry, ...] = (
         "lanes",
         "Two colours driven against each other",
         LANES,
-        "896 soft disks, orange ones pulled to the right, blue ones to the left, under a kinetic "
-        "thermostat: two lanes.",
+        "896 soft disks, orange pulled to the right, blue to the left, under a kinetic thermostat: "
+        "two lanes.",
         (
             "narrows run lanes --set field=5 --set duration=250 --set equilibration=250 "
             "--out runs/lanes",
@@ -177,8 +176,8 @@ ENTRIES: tuple[Entry, ...] = (
         "pore",
         "Diffusivity across a pore",
         PORES,
-        "D(z) of hard spheres between two walls, from colours that react there with probability "
-        "0.1 or 1, with 95 % errors, and their density.",
+        "D(z) of hard spheres between walls, from colours that react there with probability 0.1 "
+        "or 1, with 95 % errors, and their density.",
         (
             "narrows run pore --set packing_fraction=0.2 --set reaction_probabilities=[0.1,1] "
             "--set duration=2000 --out runs/pore",
@@ -205,19 +204,18 @@ def page() -> str:
     """The text of docs/gallery.md."""
     parts = [
         "# Gallery",
-        "What a run looks like, and the commands that made each picture: in a clone, one after the "
-        "other. A later picture may be of a run above it. `python docs/gallery.py` makes them all "
-        "again, and this page, in about five minutes of one core.",
+        "Pictures, the paper whose system they show, their file, and the commands that made them, "
+        "in a clone, one after the other: a picture may be of a run above it. `python "
+        "docs/gallery.py` makes them all again, and this page, in about five minutes of one core.",
     ]
     for entry in ENTRIES:
         parts += [
             f"## {entry.title}",
-            f"![{entry.shows}](figures/gallery/{entry.name}.png)",
-            f"{entry.shows} A system of [{entry.paper}](reproduce.md).",
+            f"![{entry.title}](figures/gallery/{entry.name}.png)",
+            f"{entry.shows} [{entry.paper}](reproduce.md#{entry.paper}), `{entry.picture}`.",
         ]
         if entry.commands:
             parts.append("```sh\n" + "\n".join(entry.commands) + "\n```")
-        parts.append(f"The picture is `{entry.picture}`.")
     return "\n\n".join(parts) + "\n"
 
 

@@ -1,7 +1,6 @@
 #include "fix_mpc.h"
 
 #include "core/cell_coupling.h"
-#include "core/fluid_file.h"
 #include "mpc_warnings.h"
 
 #include "atom.h"
@@ -12,6 +11,7 @@
 #include "update.h"
 
 #include <algorithm>
+#include <climits>
 #include <cmath>
 
 using namespace LAMMPS_NS;
@@ -65,7 +65,7 @@ template <int D> void FixMPC<D>::init()
     error->all(FLERR, "fix mpc: the box must not change");
   if (!solver_) {
     const bool loading = !given_.load_file.empty();
-    make_solver(loading ? MpcState<D>::particles_in(*error, given_.load_file) : given_.particles);
+    make_solver(loading ? MpcState<D>::particles_in(lmp, given_.load_file) : given_.particles);
     check_processes();
     if (loading)
       state_->load(given_.load_file);
@@ -117,6 +117,8 @@ template <int D> void FixMPC<D>::make_solver(double particles)
     box[a] = domain->prd[a];
     periodic[a] = domain->periodicity[a];
   }
+  if (particles > INT_MAX && given_.hydro == "shuffle")
+    error->all(FLERR, "fix mpc: hydro shuffle: {} particles are more than {}", particles, INT_MAX);
   const mpc::Grid<D> grid(box, periodic, given_.edge);
   interval_ = update->dt * given_.every;
 
@@ -148,7 +150,7 @@ template <int D> void FixMPC<D>::make_solver(double particles)
     method.random_solvent = std::make_unique<mpc::BathSolvent<D>>(given_.temperature);
   method.coupling = make_coupling(field, method.walls.get());
   solver_ = std::make_unique<mpc::Solver<D>>(grid, std::move(method), processes_);
-  state_ = std::make_unique<MpcState<D>>(lmp, given_, *solver_);
+  state_ = std::make_unique<MpcState<D>>(lmp, given_, *solver_, processes_);
   colloids_.set_coupling(coupling());
 }
 

@@ -197,8 +197,8 @@ MpcArguments<D>::MpcArguments(LAMMPS *lmp, int narg, char **arg)
   if (bins == 0) bins = std::max(1, static_cast<int>(std::lround(2 * domain->prd[1] / edge)));
   if ((particles > 0) == !load_file.empty())
     error->all(FLERR, "fix mpc: one of create and load must be given");
-  if (particles != std::round(particles) || particles > UINT32_MAX)
-    error->all(FLERR, "fix mpc: create {}: must be a whole number below 2^32", particles);
+  if (particles != std::round(particles) || particles > mpc::MOST_PARTICLES)
+    error->all(FLERR, "fix mpc: create {}: must be a whole number, at most 2^48", particles);
   if (walls && virtual_particles && density == 0)
     error->all(FLERR, "fix mpc: density: needed for the virtual particles of the walls");
   int pairs = 0;

@@ -32,10 +32,15 @@ std::vector<Particle<D>> MpcDump<D>::chosen(const mpc::Fluid<D> &fluid) const
 {
   std::vector<Particle<D>> mine;
   for (int i = 0; i < fluid.size(); ++i)
-    if (fluid.id[i] % given_.one_in == 0) mine.push_back(fluid.particle(i));
+    if (fluid.number(i) % given_.one_in == 0) mine.push_back(fluid.particle(i));
   if (comm->nprocs == 1) return mine;
   constexpr int record = sizeof(Particle<D>) / sizeof(double);
-  const int size = static_cast<int>(mine.size()) * record;
+  bigint values = static_cast<bigint>(mine.size()) * record, all_values = 0;
+  MPI_Allreduce(&values, &all_values, 1, MPI_LMP_BIGINT, MPI_SUM, world);
+  if (all_values > MAXSMALLINT)
+    error->all(FLERR, "fix mpc: dump M {}: {} particles are too many for one process to write",
+               given_.one_in, all_values / record);
+  const int size = static_cast<int>(values);
   std::vector<int> sizes(comm->nprocs), starts(comm->nprocs);
   MPI_Gather(&size, 1, MPI_INT, sizes.data(), 1, MPI_INT, 0, world);
   for (int p = 1; p < comm->nprocs; ++p) starts[p] = starts[p - 1] + sizes[p - 1];

@@ -7,6 +7,7 @@ from typing import Annotated
 from pydantic import Field
 
 CHECKPOINT = re.compile(r"checkpoint\.(\d{1,19})\.(restart|npz)")
+BESIDE = ".fluid"  # at the end of the name of what a checkpoint of a large fluid has beside it
 LONGEST_NAME = 255  # bytes, of most file systems
 
 FileName = Annotated[str, Field(pattern=r"^[A-Za-z0-9][A-Za-z0-9_.-]*$", max_length=100)]

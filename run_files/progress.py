@@ -7,7 +7,7 @@ from typing import Annotated, Final, Literal, Self
 from pydantic import Field, model_validator
 
 from run_files.checksums import Checksum
-from run_files.names import FileName, is_checkpoint
+from run_files.names import BESIDE, FileName, is_checkpoint
 from run_files.reading import Part, RunDirectoryError, checked, read_json, read_text
 from run_files.writing import replace_json, replace_text
 
@@ -84,7 +84,7 @@ def write_progress(directory: Path, progress: Progress) -> Progress:
     """Record the newest checkpoint, then drop the older ones; safe against a kill at any moment."""
     replace_json(directory / NAME, progress.model_dump(mode="json"))
     for old in directory.glob("checkpoint.*"):
-        if old.name != progress.checkpoint:
+        if old.name.removesuffix(BESIDE) != progress.checkpoint:
             old.unlink(missing_ok=True)
     return progress
 

@@ -169,7 +169,8 @@ class LammpsSession:
             raise RunError(self._message(error)) from None
 
     def _message(self, error: Exception) -> str:
-        return f"LAMMPS: {str(error).strip()} (log: {self._directory / 'log.lammps'})"
+        problem = str(error).strip().partition("\n")[0]  # then comes the line of the deck
+        return f"LAMMPS: {problem} (log: {self._directory / 'log.lammps'})"
 
 
 def _require_whole(file: Path) -> None:

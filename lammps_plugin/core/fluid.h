@@ -29,16 +29,24 @@ struct FluidHeader {
   std::int64_t dimension, particles, collisions;
 };
 
+constexpr double MOST_PARTICLES = 0x1p48;    // whose numbers a fluid can tell apart
+
 template <int D> struct Fluid {
   std::array<Array<double>, D> x, v;
-  Array<std::uint32_t> id;
+  Array<std::uint32_t> id;         // the lower bits of the number
+  Array<std::uint16_t> id_high;    // the upper ones; empty as long as all are 0
   Array<std::int32_t> cell;    // among this process's cells
 
   int size() const { return static_cast<int>(id.size()); }
 
+  std::uint64_t number(int i) const
+  {
+    return id_high.empty() ? id[i] : std::uint64_t{id_high[i]} << 32 | id[i];
+  }
+
   Particle<D> particle(int i) const
   {
-    Particle<D> p{static_cast<double>(id[i]), {}, {}};
+    Particle<D> p{static_cast<double>(number(i)), {}, {}};
     for (int a = 0; a < D; ++a) {
       p.x[a] = x[a][i];
       p.v[a] = v[a][i];
@@ -53,7 +61,13 @@ template <int D> struct Fluid {
       x[a].push_back(p.x[a]);
       v[a].push_back(p.v[a]);
     }
-    id.push_back(static_cast<std::uint32_t>(p.id));
+    const auto number = static_cast<std::uint64_t>(p.id);
+    if (number >> 32 && id_high.empty()) {
+      id_high.reserve(id.capacity());
+      id_high.resize(id.size());
+    }
+    if (number >> 32 || !id_high.empty()) id_high.push_back(number >> 32);
+    id.push_back(static_cast<std::uint32_t>(number));
     cell.push_back(in_cell);
   }
 
@@ -64,6 +78,7 @@ template <int D> struct Fluid {
       take_last(x[a], i);
       take_last(v[a], i);
     }
+    if (!id_high.empty()) take_last(id_high, i);
     take_last(id, i);
     take_last(cell, i);
   }
@@ -74,11 +89,15 @@ template <int D> struct Fluid {
       x[a].clear();
       v[a].clear();
     }
+    id_high.clear();
     id.clear();
     cell.clear();
   }
 
-  double bytes() const { return id.capacity() * (2.0 * D * sizeof(double) + 8); }
+  double bytes() const
+  {
+    return id.capacity() * (2.0 * D * sizeof(double) + 8) + id_high.capacity() * 2.0;
+  }
 
  private:
   // By little: the doubling of a vector would waste up to half of the memory.
@@ -89,6 +108,7 @@ template <int D> struct Fluid {
       x[a].reserve(capacity);
       v[a].reserve(capacity);
     }
+    if (!id_high.empty()) id_high.reserve(capacity);
     id.reserve(capacity);
     cell.reserve(capacity);
   }

@@ -14,6 +14,7 @@ namespace mpc {
 
 constexpr char FLUID_FILE[8] = {'m', 'p', 'c', 'f', 'l', 'u', 'i', 'd'};
 constexpr char RESTART[8] = {'m', 'p', 'c', 's', 't', 'a', 't', 'e'};
+constexpr char RESTART_APART[8] = {'m', 'p', 'c', 'a', 'p', 'a', 'r', 't'};
 
 // By words of 8 bytes, each step one-to-one: any word that changes changes it.
 class Checksum {
@@ -35,8 +36,28 @@ class Checksum {
   std::uint64_t value_ = 0xcbf29ce484222325;
 };
 
+// Of particles in a file, from a place on: what processes have of their parts adds up to that of all.
+template <int D>
+std::uint64_t checksum(const Particle<D> *particles, std::size_t count, std::uint64_t place)
+{
+  std::uint64_t total = 0;
+  for (std::size_t n = 0; n < count; ++n, ++place) {
+    Checksum sum;
+    sum.add(&place, sizeof place);
+    sum.add(&particles[n], sizeof particles[n]);
+    total += sum.value();
+  }
+  return total;
+}
+
+// Where the particles of a restart are that are not in it, and what they are.
+struct Apart {
+  std::uint64_t checksum;
+  char file[4096];    // ends with a 0
+};
+
 // What a restart begins with, before the pulls on the colloids, the average of the flow under way,
-// the particles and their checksum.
+// the particles, or the file that they are in, and a checksum.
 struct RestartHeader {
   FluidHeader fluid;
   std::int64_t processes, pulls, averages;
@@ -48,14 +69,15 @@ struct RestartHeader {
     sum.add(this, sizeof *this - sizeof checksum);
     return sum.value();
   }
+  bool apart() const { return !std::memcmp(fluid.magic, RESTART_APART, sizeof RESTART_APART); }
 };
 
-inline RestartHeader restart_header(int dimension, std::int64_t particles, std::int64_t collisions,
-                                    std::int64_t processes, std::int64_t pulls,
-                                    std::int64_t averages, std::uint64_t seed)
+inline RestartHeader restart_header(bool apart, int dimension, std::int64_t particles,
+                                    std::int64_t collisions, std::int64_t processes,
+                                    std::int64_t pulls, std::int64_t averages, std::uint64_t seed)
 {
   RestartHeader header{{{}, dimension, particles, collisions}, processes, pulls, averages, seed, 0};
-  std::memcpy(header.fluid.magic, RESTART, sizeof RESTART);
+  std::memcpy(header.fluid.magic, apart ? RESTART_APART : RESTART, sizeof RESTART);
   header.checksum = header.expected();
   return header;
 }
@@ -65,7 +87,7 @@ template <int D> RestartHeader read_restart_header(const char *buffer, std::uint
 {
   RestartHeader header;
   std::memcpy(&header, buffer, sizeof header);
-  if (std::memcmp(header.fluid.magic, RESTART, sizeof RESTART))
+  if (std::memcmp(header.fluid.magic, RESTART, sizeof RESTART) && !header.apart())
     throw Fault("restart: not of this version of fix mpc");
   if (header.checksum != header.expected()) throw Fault("restart: damaged");
   if (header.fluid.dimension != D) throw Fault("restart: of another dimension");
@@ -75,17 +97,18 @@ template <int D> RestartHeader read_restart_header(const char *buffer, std::uint
   return header;
 }
 
-// Visit the pulls, the numbers of an average, then the particles of a restart, once all are known to
-// be what was written.
-template <int D, class Pull, class OnPull, class OnAverage, class OnParticle>
+// Visit the pulls, the numbers of an average, then the particles of a restart or the word of where
+// they are, once all are known to be what was written.
+template <int D, class Pull, class OnPull, class OnAverage, class OnParticle, class OnApart>
 RestartHeader read_restart(const char *buffer, std::uint64_t seed, const OnPull &on_pull,
-                           const OnAverage &on_average, const OnParticle &on_particle)
+                           const OnAverage &on_average, const OnParticle &on_particle,
+                           const OnApart &on_apart)
 {
   const auto header = read_restart_header<D>(buffer, seed);
   const char *next = buffer + sizeof header;
   const std::size_t bytes =
       header.pulls * sizeof(Pull) + header.averages * sizeof(double) +
-      header.fluid.particles * sizeof(Particle<D>);
+      (header.apart() ? sizeof(Apart) : header.fluid.particles * sizeof(Particle<D>));
   Checksum sum;
   sum.add(next, bytes);
   std::uint64_t checksum;
@@ -101,6 +124,12 @@ RestartHeader read_restart(const char *buffer, std::uint64_t seed, const OnPull 
     std::memcpy(&average, next, sizeof average);
     on_average(average);
   }
+  if (header.apart()) {
+    Apart apart;
+    std::memcpy(&apart, next, sizeof apart);
+    on_apart(apart);
+    return header;
+  }
   for (std::int64_t n = 0; n < header.fluid.particles; ++n, next += sizeof(Particle<D>)) {
     Particle<D> particle;
     std::memcpy(&particle, next, sizeof particle);
@@ -110,9 +139,11 @@ RestartHeader read_restart(const char *buffer, std::uint64_t seed, const OnPull 
 }
 
 // The header of a file of that many bytes, of a fluid in D dimensions.
-template <int D> void check_fluid_header(const FluidHeader &header, std::uint64_t bytes)
+template <int D>
+void check_fluid_header(const FluidHeader &header, std::uint64_t bytes,
+                        const char (&magic)[8] = FLUID_FILE)
 {
-  if (std::memcmp(header.magic, FLUID_FILE, sizeof FLUID_FILE) || header.dimension != D ||
+  if (std::memcmp(header.magic, magic, sizeof magic) || header.dimension != D ||
       header.particles < 1)
     throw Fault("not a fluid in " + std::to_string(D) + " dimensions");
   const std::uint64_t most = (bytes - sizeof header) / sizeof(Particle<D>);
@@ -129,16 +160,19 @@ inline std::string short_number(double number)
   return text;
 }
 
-// Stop at a particle that cannot be; the numbers 0 ... N - 1 are each of one particle.
-template <int D> void check_number(const Particle<D> &particle, std::vector<bool> &known)
+// Stop at a number that no particle of so many has.
+inline void check_number(double number, std::int64_t particles)
 {
-  const double number = particle.id;
-  if (!(number >= 0 && number < static_cast<double>(known.size()) && number == std::floor(number)))
+  if (!(number >= 0 && number < static_cast<double>(particles) && number == std::floor(number)))
     throw Fault("a particle " + short_number(number) + ": numbers are whole, from 0 to " +
-                std::to_string(known.size() - 1));
-  const auto place = static_cast<std::size_t>(number);
-  if (known[place]) throw Fault("two particles " + std::to_string(place));
-  known[place] = true;
+                std::to_string(particles - 1));
+}
+
+// Stop at a number that is known already, of those from `first` on.
+inline void check_new(std::int64_t number, std::int64_t first, std::vector<bool> &known)
+{
+  if (known[number - first]) throw Fault("two particles " + std::to_string(number));
+  known[number - first] = true;
 }
 
 }    // namespace mpc

@@ -291,7 +291,7 @@ template <int D> class ForceCoupling : public Coupling<D> {
     try {
       stream<D>(x, v, acceleration, time, walls_, span.first, span.last);
     } catch (const TooManyBounces &bounces) {
-      throw bounces.fault(static_cast<std::uint32_t>(ids_[bounces.index]));
+      throw bounces.fault(static_cast<std::uint64_t>(ids_[bounces.index]));
     }
     return true;
   }

@@ -107,7 +107,7 @@ template <int D> class BathSolvent : public RandomSolvent<D> {
     for (int begin = 0; begin < fluid.size(); begin += BLOCK) {
       const int count = std::min(BLOCK, fluid.size() - begin);
       for (int i = 0; i < count; ++i) {
-        const auto words = random.words(Stream::Bath, fluid.id[begin + i]);
+        const auto words = random.words(Stream::Bath, fluid.number(begin + i));
         for (int word = 0; word < words_used; ++word) u[word][i] = uniform(words[word]);
       }
       for (int a = 0; a < D; a += 2) {

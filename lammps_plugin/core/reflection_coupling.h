@@ -384,7 +384,7 @@ template <int D> class ReflectionCoupling : public Coupling<D> {
     }
     for (int a : walls_->axes()) flight.x[a] = std::clamp(flight.x[a], 0.0, walls_->width(a));
     if (!fly_between<D>(*walls_, flight.x, flight.v, field_, time))
-      throw TooManyBounces::fault(static_cast<std::uint32_t>(flight.id));
+      throw TooManyBounces::fault(static_cast<std::uint64_t>(flight.id));
   }
 
   Radii radii_;

@@ -268,7 +268,7 @@ template <int D> class Solver {
       stream<D>(x, v, Field<D>{method_.field}, method_.interval, method_.walls.get(), begin,
                 end);
     } catch (const TooManyBounces &bounces) {
-      throw bounces.fault(fluid_.id[bounces.index]);
+      throw bounces.fault(fluid_.number(bounces.index));
     }
   }
 
@@ -407,7 +407,7 @@ template <int D> class Solver {
       x[a] = fluid_.x[a][i] = wrapped<D>(grid_, a, fluid_.x[a][i]);
       const bool inside = x[a] >= 0 && x[a] <= grid_.box[a];
       if (!inside || !std::isfinite(fluid_.v[a][i]))
-        throw Fault("fluid particle " + std::to_string(fluid_.id[i]) + " has " + "xyz"[a] + " = " +
+        throw Fault("fluid particle " + std::to_string(fluid_.number(i)) + " has " + "xyz"[a] + " = " +
                     std::to_string(x[a]) + " and v" + "xyz"[a] + " = " +
                     std::to_string(fluid_.v[a][i]) +
                     ": not a number, or beyond a wall; the time step is too long");

@@ -71,7 +71,7 @@ template <int D> struct PerParticle {
 struct TooManyBounces {
   int index;
 
-  static Fault fault(std::uint32_t id)
+  static Fault fault(std::uint64_t id)
   {
     return Fault("fluid particle " + std::to_string(id) + " meets the walls more than " +
                  std::to_string(MOST_BOUNCES) +

@@ -169,8 +169,9 @@ template <int D> class AndersenThermostat : public Thermostat<D> {
   void redraw(Fluid<D> &fluid, const CounterRandom &random) override
   {
     for (int i = 0; i < fluid.size(); ++i) {
-      if (uniform(random.words(Stream::Thermostat, fluid.id[i])[0]) >= probability_) continue;
-      const auto z = normals<D>(random.words(Stream::Thermostat, fluid.id[i], 1));
+      const auto number = fluid.number(i);
+      if (uniform(random.words(Stream::Thermostat, number)[0]) >= probability_) continue;
+      const auto z = normals<D>(random.words(Stream::Thermostat, number, 1));
       for (int a = 0; a < D; ++a) fluid.v[a][i] = speed_ * z[a];
     }
   }

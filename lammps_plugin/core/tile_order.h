@@ -40,6 +40,8 @@ template <int D> class TileOrder {
     }
     Array<std::uint32_t> ids;
     reorder(fluid.id, ids);
+    Array<std::uint16_t> high;
+    if (!fluid.id_high.empty()) reorder(fluid.id_high, high);
     Array<std::int32_t> cells;
     reorder(fluid.cell, cells);
   }

@@ -64,6 +64,8 @@ def run(
                 return
             if simulation.step:
                 say(f"{out}: going on from time {simulation.time:g}")
+            elif resume:
+                say(f"{out}: nothing to go on from, begins with a duration of {chosen.duration:g}")
             finish_with_progress(simulation)
             if not simulation.finished:
                 raise KeyboardInterrupt("go on from the newest checkpoint by --resume")

@@ -49,13 +49,16 @@ Bytes fluid_file(const std::vector<Particle<D>> &particles)
   return bytes;
 }
 
-Bytes restart(const std::vector<Particle<D>> &particles, int pulls, int averages)
+Bytes restart(const std::vector<Particle<D>> &particles, int pulls, int averages, bool apart)
 {
   Bytes bytes, records;
-  append(bytes, restart_header(D, particles.size(), 3, 1, pulls, averages, SEED));
+  append(bytes, restart_header(apart, D, particles.size(), 3, 1, pulls, averages, SEED));
   for (int n = 0; n < pulls; ++n) append(records, Pull{0, 1.0 * n, {1, 2}, {3, 4}});
   for (int n = 0; n < averages; ++n) append(records, 1.5 * n);
-  for (const auto &particle : particles) append(records, particle);
+  if (apart)
+    append(records, Apart{checksum<D>(particles.data(), particles.size(), 0), "/a.fluid"});
+  else
+    for (const auto &particle : particles) append(records, particle);
   Checksum sum;
   sum.add(records.data(), records.size());
   bytes.insert(bytes.end(), records.begin(), records.end());
@@ -105,7 +108,8 @@ bool load(const Bytes &bytes)
     for (std::int64_t n = 0; n < header.particles; ++n) {
       Particle<D> particle;
       std::memcpy(&particle, memory.get() + sizeof header + n * sizeof particle, sizeof particle);
-      check_number(particle, known);
+      check_number(particle.id, header.particles);
+      check_new(static_cast<std::int64_t>(particle.id), 0, known);
     }
     return false;
   } catch (const Fault &) {
@@ -119,11 +123,32 @@ bool read(const Bytes &bytes, std::vector<Particle<D>> &particles)
     const auto memory = exactly(bytes);
     read_restart<D, Pull>(
         memory.get(), SEED, [](const Pull &) {}, [](double) {},
-        [&](const Particle<D> &particle) { particles.push_back(particle); });
+        [&](const Particle<D> &particle) { particles.push_back(particle); },
+        [](const Apart &apart) { if (apart.file[0] != '/') std::abort(); });
     return false;
   } catch (const Fault &) {
     return true;
   }
+}
+
+// What is wrong with the checksum of a file apart: it is the same in parts, as processes read it, and
+// another of any other file.
+std::string file_apart(std::vector<Particle<D>> particles, Chance &chance)
+{
+  const auto count = particles.size(), part = chance() % (count + 1);
+  const auto of_all = checksum<D>(particles.data(), count, 0);
+  if (of_all != checksum<D>(particles.data(), part, 0) +
+          checksum<D>(particles.data() + part, count - part, part))
+    return "parts do not add up";
+  const auto before = particles;
+  Bytes bytes(count * sizeof(Particle<D>));
+  std::memcpy(bytes.data(), particles.data(), bytes.size());
+  damage(bytes, chance, true);
+  std::memcpy(static_cast<void *>(particles.data()), bytes.data(), bytes.size());
+  const bool same = !std::memcmp(before.data(), bytes.data(), bytes.size());
+  if ((checksum<D>(particles.data(), count, 0) == of_all) != same)
+    return same ? "whole, but refused" : "damaged, but taken";
+  return {};
 }
 
 }    // namespace
@@ -139,9 +164,14 @@ int main(int, char **argv)
     auto damaged = file;
     damage(damaged, chance, false);
     refused += load(damaged);
-    const auto whole = restart(particles, chance() % 4, 3);
+    const auto whole = restart(particles, chance() % 4, 3, chance() % 2);
     auto other = whole;
     damage(other, chance, true);    // LAMMPS reads as many bytes as it wrote
+    const auto differing = file_apart(particles, chance);
+    if (!differing.empty()) {
+      std::printf("case %ld: %s\n", n, differing.c_str());
+      return 1;
+    }
     std::vector<Particle<D>> found;
     const bool no = read(other, found);
     refused += no;

@@ -56,6 +56,10 @@ OTHERS: dict[str, tuple[str, Mapping[str, object]]] = {  # scene and fields
             "peclet": 1,
         },
     ),
+    "large fluid": (
+        "poiseuille",
+        {"length": 110, "width": 100, "gravity": 1e-5, "sampling_interval": 1.5, "duration": 90},
+    ),
     "spheres": ("pore", {"particles": 3000, "sampling_interval": 0.75, "duration": 90}),
     "langevin": ("lanes", {**LANES, "thermostat": "langevin"}),
     "dissipative pairs": ("lanes", {**LANES, "thermostat": "dpd"}),

@@ -78,6 +78,10 @@ def test_a_run_is_quiet_without_a_terminal(tmp_path: Path, command: Run) -> None
     assert f"{out} is not empty: go on with its run by --resume" in refused.stderr
     again = command("narrows", "run", "channel", "--out", out, "--resume")
     assert again.stdout == f"{out}: finished before, at time 1.2\n"
+    other = tmp_path / "other"
+    begun = command("narrows", "run", "channel", "--out", other, *SHORT, "--resume")
+    nothing = f"{other}: nothing to go on from, begins with a duration of 1.2"
+    assert begun.stdout.splitlines()[0] == nothing
 
 
 def test_what_will_be_inaccurate_is_one_warning_and_runs(tmp_path: Path, command: Run) -> None:

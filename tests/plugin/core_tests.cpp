@@ -179,6 +179,37 @@ void a_particle_that_meets_the_walls_too_often_is_named()
   }
 }
 
+// They name the same random numbers everywhere, and stay with their particles.
+void numbers_have_more_than_32_bits()
+{
+  for (const double first : {0.0, 0x1p32 - 2, 0x1p47}) {
+    auto how = method<2>(0);
+    how.random_solvent = std::make_unique<BathSolvent<2>>(1.0);
+    Box<2> box({}, std::move(how));
+    for (int n = 0; n < 4; ++n) box.solver->add({first + n, {1, 1}, {0, 0}});
+    box.collide();
+    for (int n = 0; n < 4; ++n) {
+      const auto number = static_cast<std::uint64_t>(first) + n;
+      CHECK(box.solver->fluid().number(n) == number);
+      const auto z = normals<2>(CounterRandom{1, 0}.words(Stream::Bath, number));
+      for (int a = 0; a < 2; ++a) CHECK(box.solver->fluid().v[a][n] == z[a]);
+    }
+
+    const Grid<2> grid({32, 32}, {true, true}, 1);
+    Fluid<2> fluid;
+    for (int n = 0; n < 2000; ++n) {
+      const Vector<2> x{n * 37 % 32 + 0.5, n / 32 % 32 + 0.5};
+      fluid.append({first + n, x, {1.0 * n, 0}}, grid.local(x));
+    }
+    CHECK(fluid.id_high.empty() == (first == 0));
+    TileOrder<2>().sort(fluid, grid);
+    fluid.remove(3);
+    for (int i = 0; i < fluid.size(); ++i) CHECK(fluid.particle(i).id == first + fluid.v[0][i]);
+    const double bytes = fluid.bytes() / fluid.id.capacity();
+    CHECK(bytes == (first == 0 ? 40 : 42));
+  }
+}
+
 void the_permutation_is_one()
 {
   for (int count : {1, 2, 5, 16, 17, 1000}) {
@@ -656,6 +687,7 @@ int main()
   wrapping_keeps_particles_in_the_box();
   a_lost_particle_is_named();
   a_particle_that_meets_the_walls_too_often_is_named();
+  numbers_have_more_than_32_bits();
   the_permutation_is_one();
   logarithm_cosine_and_sine_are_those_of_the_c_library();
   momentum_and_energy_are_kept();

@@ -94,7 +94,7 @@ def test_the_wall_is_the_numpy_definition(lammps: Commands) -> None:
         ("mpc 1 NULL 1 1 5", "one of create and load"),
         ("mpc 1 NULL 1 1 5 create 600", "density: needed"),
         ("mpc 1 NULL 1 1 5 density 10 create 1.5", "create 1.5"),
-        ("mpc 1 NULL 1 1 5 density 10 load missing.fluid", "cannot read missing.fluid"),
+        ("mpc 1 NULL 1 1 5 density 10 load missing.fluid", "missing.fluid: cannot be read"),
         ("mpc 1 NULL 1 1 5 angle 200 " + FLUID, "angle 200: must be at most 180"),
         ("mpc 1 NULL 1 1 5 tstat nose " + FLUID, "tstat nose: must be one of none, layer"),
         ("mpc 1 NULL 1 1 5 hydro off " + FLUID, "hydro off: must be one of on, shuffle, bath"),
