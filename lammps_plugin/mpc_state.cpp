@@ -164,24 +164,54 @@ void MpcState<D>::distribute(std::int64_t particles, const Fill &fill)
   for (const auto &particle : processes_.deliver(std::move(mine), home)) solver_.add(particle);
 }
 
+// Which colloids, or periodic images of them, may leave no room; about a cell for each colloid.
+template <int D>
+mpc::ColloidCells<D> MpcState<D>::rooms(const std::vector<Colloid<D>> &colloids,
+                                        const mpc::Coupling<D> *coupling) const
+{
+  Vector<D> box;
+  double volume = 1;
+  for (int a = 0; a < D; ++a) volume *= box[a] = domain->prd[a];
+  const double share = volume / std::max<std::size_t>(1, colloids.size());
+  mpc::ColloidCells<D> cells;
+  cells.begin({box, {}, std::pow(share, 1.0 / D)});
+  int images = 1;
+  for (int a = 0; a < D; ++a) images *= 3;
+  for (std::size_t c = 0; c < colloids.size(); ++c) {
+    for (int image = 0; image < images; ++image) {
+      auto x = colloids[c].x;
+      bool real = true;
+      for (int a = 0, digits = image; a < D; ++a, digits /= 3) {
+        x[a] += (digits % 3 - 1) * box[a];
+        real &= digits % 3 == 1 || domain->periodicity[a];
+      }
+      if (real) cells.enter(static_cast<int>(c), x, coupling->room(colloids[c].type));
+    }
+  }
+  cells.finish();
+  return cells;
+}
+
 // Uniform outside the colloids, Maxwell velocities, no momentum; a function of the seed and the
 // particle's number alone.
 template <int D> void MpcState<D>::create(const std::vector<Colloid<D>> &colloids,
                                           const mpc::Coupling<D> *coupling)
 {
   solver_.reset(0, lower(), upper());
+  const auto near = rooms(colloids, coupling);
   const auto overlaps = [&](const Vector<D> &x) {
-    for (const auto &colloid : colloids) {
+    bool within = false;
+    near.each(near.grid().local(x), [&](int c) {
       Vector<D> separation;
       for (int a = 0; a < D; ++a) {
-        separation[a] = x[a] - colloid.x[a];
+        separation[a] = x[a] - colloids[c].x[a];
         if (domain->periodicity[a])
           separation[a] -= domain->prd[a] * std::round(separation[a] / domain->prd[a]);
       }
-      const double room = coupling->room(colloid.type);
-      if (mpc::square<D>(separation) < room * room) return true;
-    }
-    return false;
+      const double room = coupling->room(colloids[c].type);
+      within |= mpc::square<D>(separation) < room * room;
+    });
+    return within;
   };
   const mpc::CounterRandom random{given_.seed, 0};
   distribute(static_cast<std::int64_t>(given_.particles), [&](std::int64_t number, auto &particles) {

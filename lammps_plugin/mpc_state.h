@@ -3,6 +3,7 @@
 
 #pragma once
 
+#include "core/colloid_cells.h"
 #include "core/fluid_file.h"
 #include "core/solver.h"
 #include "mpc_arguments.h"
@@ -48,6 +49,8 @@ template <int D> class MpcState : protected Pointers {
   void check(const mpc::Particle<D> &, std::int64_t particles, const std::string &file) const;
   void check_each_once(std::vector<double> numbers, std::int64_t particles,
                        const std::string &file);
+  mpc::ColloidCells<D> rooms(const std::vector<mpc::Colloid<D>> &,
+                             const mpc::Coupling<D> *) const;
   std::int64_t share(std::int64_t particles, int process) const;
   template <class Fill> void distribute(std::int64_t particles, const Fill &);
   std::uint64_t write(const std::string &file, const char *why, const char (&magic)[8],

@@ -143,25 +143,26 @@ double PairDLVO::init_one(int i, int j)
 }
 
 // (1); so far out that it is no more than a rounding of the strength, nothing.
-inline double PairDLVO::Spheres::coulomb(double r) const
+inline double PairDLVO::Spheres::coulomb(double r, double inverse) const
 {
   const double exponent = kappa * (r - diameter);
-  return exponent < 40 ? charge * diameter * diameter / r * mpc::exponential(-exponent) : 0.0;
+  return exponent < 40 ? charge * diameter * diameter * inverse * mpc::exponential(-exponent) : 0.0;
 }
 
 // (1) and (2).
 double PairDLVO::Spheres::dlvo_energy(double r) const
 {
-  if (hamaker == 0) return coulomb(r);
+  if (hamaker == 0) return coulomb(r, 1 / r);
   const double ratio = diameter * diameter / (r * r);
-  return coulomb(r) - hamaker / 12 * (ratio / (1 - ratio) + ratio + 2 * std::log1p(-ratio));
+  return coulomb(r, 1 / r) - hamaker / 12 * (ratio / (1 - ratio) + ratio + 2 * std::log1p(-ratio));
 }
 
-inline double PairDLVO::Spheres::dlvo_force(double r) const
+// With the inverse of r, for divisions take longer than the rest.
+inline double PairDLVO::Spheres::dlvo_force(double r, double inverse) const
 {
-  const double d2 = diameter * diameter, gap = r * r - d2;
-  const double repulsion = coulomb(r) * (1 / r + kappa);
-  return hamaker > 0 ? repulsion - hamaker / 6 * d2 * d2 * d2 / (r * r * r * gap * gap) : repulsion;
+  const double d2 = diameter * diameter, ratio = d2 * inverse * inverse, gap = r * r - d2;
+  const double repulsion = coulomb(r, inverse) * (inverse + kappa);
+  return hamaker > 0 ? repulsion - hamaker / 6 * d2 * d2 * ratio * inverse / (gap * gap) : repulsion;
 }
 
 // With the parabola -depth + stiffness (r - d)^2 / 2 from contact to the joint, and (3) below contact.
@@ -174,9 +175,9 @@ double PairDLVO::Spheres::energy(double r) const
 }
 
 // Without branches, for loops over many.
-inline double PairDLVO::Spheres::force(double r) const
+inline double PairDLVO::Spheres::force(double r, double inverse) const
 {
-  const double outer = dlvo_force(r);
+  const double outer = dlvo_force(r, inverse);
   const double overlap = r < diameter ? diameter - r : 0, gap = r < diameter ? 0 : r - diameter;
   const double force = r < joint ? -stiffness * gap : outer;
   return force + 2.5 * hertz * overlap * std::sqrt(overlap);
@@ -188,7 +189,7 @@ void PairDLVO::Spheres::join()
 {
   const auto excess = [&](double gap) {
     const double r = diameter + gap;
-    return dlvo_energy(r) + depth + 0.5 * gap * dlvo_force(r);
+    return dlvo_energy(r) + depth + 0.5 * gap * dlvo_force(r, 1 / r);
   };
   double inner = 1e-8 * diameter, outer = inner;
   while (excess(outer) < 0) {
@@ -200,7 +201,7 @@ void PairDLVO::Spheres::join()
     (excess(middle) < 0 ? inner : outer) = middle;
   }
   joint = diameter + outer;
-  stiffness = -dlvo_force(joint) / outer;
+  stiffness = -dlvo_force(joint, 1 / joint) / outer;
 }
 
 // Of the relative velocity along the line of centres: lubrication (4), largest in contact and zero
@@ -217,27 +218,15 @@ inline double PairDLVO::Spheres::normal_friction(double r) const
 void PairDLVO::compute(int eflag, int vflag)
 {
   ev_init(eflag, vflag);
-  double **x = atom->x;
   const int *type = atom->type;
   for (int ii = 0; ii < list->inum; ++ii) {
-    const int i = list->ilist[ii], *neighbors = list->firstneigh[i];
-    const double xi = x[i][0], yi = x[i][1], zi = x[i][2];
-    Pairs *of_type = &near_[type[i] * (types_ + 1)];
-    const double *range = cutsq[type[i]];
-    for (int jj = 0; jj < list->numneigh[i]; ++jj) {
-      const int j = neighbors[jj] & NEIGHMASK;
-      Pairs &pairs = of_type[type[j]];
-      const int k = pairs.count;
-      const double ex = xi - x[j][0], ey = yi - x[j][1], ez = zi - x[j][2];
-      const double r2 = ex * ex + ey * ey + ez * ez;
-      pairs.i[k] = i;
-      pairs.j[k] = j;
-      pairs.x[k] = ex;
-      pairs.y[k] = ey;
-      pairs.z[k] = ez;
-      pairs.r[k] = r2;
-      pairs.count += r2 < range[type[j]];    // without a branch: who is near follows no pattern
-      if (pairs.count == Pairs::MOST) act(of(type[i], type[j]), pairs, eflag);
+    const int i = list->ilist[ii], *neighbors = list->firstneigh[i], count = list->numneigh[i];
+    const auto types = static_cast<std::size_t>(type[i]) * (types_ + 1);
+    if (types_ == 1) {
+      gather(types + 1, i, neighbors, count, eflag);
+    } else {
+      for (int jj = 0; jj < count; ++jj)
+        gather(types + type[neighbors[jj] & NEIGHMASK], i, neighbors + jj, 1, eflag);
     }
   }
   for (std::size_t types = 0; types < near_.size(); ++types)
@@ -245,28 +234,94 @@ void PairDLVO::compute(int eflag, int vflag)
   if (vflag_fdotr) virial_fdotr_compute();
 }
 
-// The forces of all pairs gathered.
-void PairDLVO::act(const Spheres &given, Pairs &pairs, int eflag)
+// Pairs of two types, as the list has them: whether they are in range is told by their forces.
+inline void PairDLVO::gather(std::size_t types, int i, const int *neighbors, int count, int eflag)
+{
+  auto &pairs = near_[types];
+  double **x = atom->x;
+  const double xi = x[i][0], yi = x[i][1], zi = x[i][2];
+  while (count > 0) {
+    const int first = pairs.count, some = std::min(count, Pairs::MOST - first);
+    for (int n = 0; n < some; ++n) {
+      const int j = neighbors[n] & NEIGHMASK, k = first + n;
+      pairs.i[k] = i;
+      pairs.j[k] = j;
+      pairs.x[k] = xi - x[j][0];
+      pairs.y[k] = yi - x[j][1];
+      pairs.z[k] = zi - x[j][2];
+    }
+    pairs.count += some;
+    neighbors += some;
+    count -= some;
+    if (pairs.count == Pairs::MOST) act(spheres_[types], pairs, eflag);
+  }
+}
+
+// All that the pairs gathered do.
+void PairDLVO::act(const Spheres &spheres, Pairs &pairs, int eflag)
+{
+  repel(spheres, pairs);
+  if (dissipates_) dissipate(spheres, pairs);
+  if (evflag)
+    tally(spheres, pairs, eflag);
+  else
+    push(pairs);
+  pairs.count = 0;
+}
+
+// (1) to (3). A function of its own: inlined, GCC 12 leaves the vector registers' upper halves in use
+// (no vzeroupper), and LAMMPS's own styles, of older instructions, then take twice as long.
+[[gnu::noinline]] void PairDLVO::repel(const Spheres &given, Pairs &pairs)
 {
   const Spheres spheres = given;
   const int count = pairs.count;
   for (int k = 0; k < count; ++k) {
-    const double r = std::sqrt(pairs.r[k]), inverse = 1 / r;
-    pairs.x[k] *= inverse;
-    pairs.y[k] *= inverse;
-    pairs.z[k] *= inverse;
+    const double ex = pairs.x[k], ey = pairs.y[k], ez = pairs.z[k];
+    const double r = std::sqrt(ex * ex + ey * ey + ez * ez), inverse = 1 / r;
+    pairs.x[k] = ex * inverse;
+    pairs.y[k] = ey * inverse;
+    pairs.z[k] = ez * inverse;
     pairs.r[k] = r;
-    const double force = spheres.force(r);
+    const double force = spheres.force(r, inverse);
     pairs.along[k] = r < spheres.cutoff ? force : 0;
   }
-  if (dissipates_) dissipate(spheres, pairs);
-  for (int k = 0; k < count; ++k) {
+}
+
+// Of all pairs; those of an atom follow each other.
+void PairDLVO::push(const Pairs &pairs)
+{
+  double *f = atom->f[0];
+  const int count = pairs.count, own = force->newton_pair ? atom->nlocal + atom->nghost : atom->nlocal;
+  for (int k = 0; k < count;) {
+    const int i = pairs.i[k];
+    double fx = 0, fy = 0, fz = 0;
+    for (; k < count && pairs.i[k] == i; ++k) {
+      const double px = pairs.along[k] * pairs.x[k], py = pairs.along[k] * pairs.y[k],
+                   pz = pairs.along[k] * pairs.z[k];
+      fx += px;
+      fy += py;
+      fz += pz;
+      if (pairs.j[k] >= own) continue;
+      double *fj = f + 3 * pairs.j[k];
+      fj[0] -= px;
+      fj[1] -= py;
+      fj[2] -= pz;
+    }
+    f[3 * i] += fx;
+    f[3 * i + 1] += fy;
+    f[3 * i + 2] += fz;
+  }
+}
+
+// The same, with the energy and the virial.
+void PairDLVO::tally(const Spheres &spheres, const Pairs &pairs, int eflag)
+{
+  for (int k = 0; k < pairs.count; ++k) {
     const double e[3] = {pairs.x[k], pairs.y[k], pairs.z[k]}, r = pairs.r[k];
     const double energy = eflag && r < spheres.cutoff ? spheres.energy(r) : 0;
     const double f = pairs.along[k];
     push(pairs.i[k], pairs.j[k], {f * e[0], f * e[1], f * e[2]}, e, r, energy);
   }
-  pairs.count = 0;
 }
 
 // Friction along the line of centres, and of surfaces in contact, with the noise that they demand.
@@ -356,6 +411,6 @@ double PairDLVO::single(int, int, int itype, int jtype, double rsq, double, doub
   const auto &spheres = of(itype, jtype);
   const double r = std::sqrt(rsq);
   if (r >= spheres.cutoff) return fforce = 0;
-  fforce = spheres.force(r) / r;
+  fforce = spheres.force(r, 1 / r) / r;
   return spheres.energy(r);
 }

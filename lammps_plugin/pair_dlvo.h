@@ -40,30 +40,34 @@ class PairDLVO : public Pair {
     double shift = 0;                   // energy at the cutoff, with pair_modify shift yes
 
     double energy(double r) const;
-    double force(double r) const;
-    double coulomb(double r) const;
+    double force(double r, double inverse) const;
+    double coulomb(double r, double inverse) const;
     double dlvo_energy(double r) const;
-    double dlvo_force(double r) const;
+    double dlvo_force(double r, double inverse) const;
     void join();
     double normal_friction(double r) const;
   };
 
-  // Pairs of two types within their range, component by component: loops over them are vectorised.
+  // Pairs of two types, component by component: loops over them are vectorised.
   struct Pairs {
     static constexpr int MOST = 512;    // their state stays in the caches
     template <class Value> using Each = std::array<Value, MOST>;
 
     int count = 0;
     Each<int> i, j;
-    Each<double> x, y, z, r;    // from j to i: the way and its square, then direction and length
+    Each<double> x, y, z, r;    // from j to i: the way, then its direction and length
     Each<double> along;         // force on i in that direction
     Each<double> friction;      // of the relative velocity along it
   };
 
   void allocate();
+  void gather(std::size_t types, int i, const int *neighbors, int count, int eflag);
   void act(const Spheres &, Pairs &, int eflag);
+  void repel(const Spheres &, Pairs &);
   void dissipate(const Spheres &, Pairs &);
   void rub(const Spheres &, const Pairs &, int k, const Normals &z);
+  void push(const Pairs &);
+  void tally(const Spheres &, const Pairs &, int eflag);
   void push(int i, int j, const std::array<double, 3> &pull, const double *e, double r,
             double energy);
   Spheres &of(int itype, int jtype) { return spheres_[itype * (types_ + 1) + jtype]; }
