@@ -7,14 +7,28 @@
 
 namespace mpc {
 
+// What it does is begun at the collision, and done to a block of the fluid when somebody asks for the
+// velocities of after.
 template <int D> class RandomSolvent {
  public:
   virtual ~RandomSolvent() = default;
 
-  // Whether the collision is left out, as far as nobody but the fluid takes part in it.
+  // Whether the collision is left out, as far as nobody but the fluid takes part in it. Then nobody
+  // asks for the velocities of before.
   virtual bool replaces_collision() const = 0;
-  virtual void redraw(Fluid<D> &, const CounterRandom &, Processes &, double particles) = 0;
+
+  virtual void begin(const Fluid<D> &, const CounterRandom &, Processes &, double particles) = 0;
+  virtual void redraw(Fluid<D> &, int begin, int end) const = 0;
 };
+
+// The finaliser of SplitMix64, and what its numbers count on by.
+inline std::uint64_t mix(std::uint64_t z)
+{
+  z = (z ^ z >> 30) * 0xBF58476D1CE4E5B9u;
+  z = (z ^ z >> 27) * 0x94D049BB133111EBu;
+  return z ^ z >> 31;
+}
+constexpr std::uint64_t SPLIT_MIX = 0x9E3779B97F4A7C15u;
 
 // A keyed permutation of 0 ... count - 1: a Feistel network of eight rounds on the pairs (number /
 // columns, number % columns), columns the smallest with columns^2 >= count. The few values from
@@ -59,14 +73,6 @@ class Permutation {
     return place < count ? place : place - count;
   }
 
-  // The finaliser of SplitMix64.
-  static std::uint64_t mix(std::uint64_t z)
-  {
-    z = (z ^ z >> 30) * 0xBF58476D1CE4E5B9u;
-    z = (z ^ z >> 27) * 0x94D049BB133111EBu;
-    return z ^ z >> 31;
-  }
-
   std::uint64_t count_, rows_, columns_;
   std::array<std::uint64_t, 8> keys_;
 };
@@ -77,56 +83,67 @@ template <int D> class ShuffledSolvent : public RandomSolvent<D> {
  public:
   bool replaces_collision() const override { return false; }
 
-  void redraw(Fluid<D> &fluid, const CounterRandom &random, Processes &processes,
-              double particles) override
+  void begin(const Fluid<D> &fluid, const CounterRandom &random, Processes &processes,
+             double particles) override
   {
     const Permutation permutation(static_cast<std::uint64_t>(particles), random);
-    std::vector<std::uint32_t> other(fluid.size());
-    permutation(fluid.id.data(), other.data(), fluid.size());
-    std::vector<double> all(static_cast<std::size_t>(particles));
-    for (auto &component : fluid.v) {
-      std::fill(all.begin(), all.end(), 0.0);
-      for (int i = 0; i < fluid.size(); ++i) all[fluid.id[i]] = component[i];
-      processes.sum(all.data(), static_cast<int>(particles));
-      for (int i = 0; i < fluid.size(); ++i) component[i] = all[other[i]];
+    other_.resize(fluid.size());
+    permutation(fluid.id.data(), other_.data(), fluid.size());
+    for (int a = 0; a < D; ++a) {
+      all_[a].assign(static_cast<std::size_t>(particles), 0.0);
+      for (int i = 0; i < fluid.size(); ++i) all_[a][fluid.id[i]] = fluid.v[a][i];
+      processes.sum(all_[a].data(), static_cast<int>(particles));
     }
   }
+
+  void redraw(Fluid<D> &fluid, int begin, int end) const override
+  {
+    for (int a = 0; a < D; ++a)
+      for (int i = begin; i < end; ++i) fluid.v[a][i] = all_[a][other_[i]];
+  }
+
+ private:
+  std::vector<std::uint32_t> other_;
+  std::array<std::vector<double>, D> all_;
 };
 
-// All velocities are drawn anew from the Maxwell distribution.
+// All velocities are drawn anew from the Maxwell distribution: word k of particle i is number i of
+// SplitMix64 from key_k on, the keys being the four words of the collision's block of the stream.
 template <int D> class BathSolvent : public RandomSolvent<D> {
  public:
   explicit BathSolvent(double temperature) : speed_(std::sqrt(temperature)) {}
 
   bool replaces_collision() const override { return true; }
 
-  void redraw(Fluid<D> &fluid, const CounterRandom &random, Processes &, double) override
+  void begin(const Fluid<D> &, const CounterRandom &random, Processes &, double) override
   {
-    constexpr int words_used = D + D % 2;    // normals come in pairs
-    std::array<std::array<double, BLOCK>, words_used> u;
-    for (int begin = 0; begin < fluid.size(); begin += BLOCK) {
-      const int count = std::min(BLOCK, fluid.size() - begin);
-      for (int i = 0; i < count; ++i) {
-        const auto words = random.words(Stream::Bath, fluid.id[begin + i]);
-        for (int word = 0; word < words_used; ++word) u[word][i] = uniform(words[word]);
-      }
-      for (int a = 0; a < D; a += 2) {
-        double *first = fluid.v[a].data() + begin;
-        double *second = a + 1 < D ? fluid.v[a + 1].data() + begin : unused_.data();
+    keys_ = random.words(Stream::Bath, 0);
+  }
+
+  // In blocks, whose loops are vectorised.
+  void redraw(Fluid<D> &fluid, int begin, int end) const override
+  {
+    constexpr int BLOCK = 128;    // particles
+    std::array<std::array<double, BLOCK>, 4> u, z;
+    for (int first = begin; first < end; first += BLOCK) {
+      const int count = std::min(BLOCK, end - first);
+      for (int k = 0; k < D + D % 2; ++k)    // normals come in pairs
+        for (int i = 0; i < count; ++i)
+          u[k][i] = uniform(mix(keys_[k] + (fluid.id[first + i] + std::uint64_t{1}) * SPLIT_MIX));
+      for (int k = 0; k < D; k += 2)
         for (int i = 0; i < count; ++i) {
-          const auto z = normal_pair(u[a][i], u[a + 1][i]);
-          first[i] = speed_ * z[0];
-          second[i] = speed_ * z[1];
+          const auto pair = normal_pair(u[k][i], u[k + 1][i]);
+          z[k][i] = pair[0];
+          z[k + 1][i] = pair[1];
         }
-      }
+      for (int a = 0; a < D; ++a)
+        for (int i = 0; i < count; ++i) fluid.v[a][first + i] = speed_ * z[a][i];
     }
   }
 
  private:
-  static constexpr int BLOCK = 256;    // particles; their loops are vectorised
-
   double speed_;
-  std::array<double, BLOCK> unused_;    // the fourth normal of each block in 3D
+  Words keys_{};
 };
 
 }    // namespace mpc

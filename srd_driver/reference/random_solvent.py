@@ -6,7 +6,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from lammps_inputs.system import Array
-from srd_driver.reference.counter_random import CounterRandom, Stream, Words
+from srd_driver.reference.counter_random import CounterRandom, Stream, Words, box_muller, uniform
 
 ROUNDS = 8
 
@@ -60,7 +60,12 @@ def bath(velocities: Array, random: CounterRandom) -> None:
     """Draw all velocities anew from the Maxwell distribution at kBT = m_f = 1, in place.
 
     Each component has the standard deviation sqrt(kBT / m_f), which the paper calls the variance.
-    Particle i takes the first d normals of its block of stream BATH.
+    Particle i takes the first d normals, by Box-Muller, of four words: word k is number i + 1 of
+    SplitMix64 from the seed key_k, mix(key_k + (i + 1) 9E3779B97F4A7C15). The keys are the words of
+    item 0 of stream BATH: seeds of their own for each collision. A block of Philox for each
+    particle would take longer than all else that the particle does.
     """
     dimensions, particles = velocities.shape
-    velocities[:] = random.normal(Stream.BATH, particles)[:dimensions]
+    steps = np.arange(1, particles + 1, dtype=np.uint64) * np.uint64(0x9E3779B97F4A7C15)
+    words = _mix(random.words(Stream.BATH, 1) + steps)
+    velocities[:] = box_muller(uniform(words))[:dimensions]
