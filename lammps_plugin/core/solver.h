@@ -465,11 +465,15 @@ template <int D> class Solver {
       if (joining()) coupling->turn(turns_, processes_);
     }
     if (solvent) {
-      if (solvent->replaces_collision())
-        turning_ = false;
-      else
-        turn();
-      solvent->begin(fluid_, random, processes_, particles_);
+      solvent->begin(fluid_, random, particles_);
+      if (!solvent->replaces_collision())
+        for (int begin = 0; begin < fluid_.size(); begin += BLOCK) {
+          const int end = std::min(begin + BLOCK, fluid_.size());
+          if (turning_) turn(begin, end);
+          solvent->collect(fluid_, begin, end);
+        }
+      solvent->share(processes_);
+      turning_ = false;
       redrawing_ = true;
     }
     ++collisions_;
