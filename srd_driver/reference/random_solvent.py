@@ -22,8 +22,9 @@ def permutation(count: int, random: CounterRandom) -> NDArray[np.intp]:
 
     i -> (a i + b) mod p, p the smallest prime that is not below `count`; an image from `count` on is
     sent through again. a = 1 + floor(u_0 (p - 1)) and b = floor(u_1 p) are of item 0 of stream
-    SHUFFLE. Modulo p any two numbers have any two others as images with equal probability, as those
-    of a permutation drawn from all: momentum that neighbours share is scattered.
+    SHUFFLE. Modulo p any two numbers have any two others as images with equal probability, as in a
+    permutation drawn from all: momentum that neighbours share is scattered. What goes through again
+    changes that of two numbers by 2 (p - count) / p at most: 8e-4 of 50 000, for which p = 50 021.
     """
     prime = _prime_from(count)
     u = random.uniform(Stream.SHUFFLE, 1)[:2, 0]
