@@ -20,8 +20,8 @@ def shuffle(velocities: Array, random: CounterRandom) -> None:
 def permutation(count: int, random: CounterRandom) -> NDArray[np.intp]:
     """A random permutation pi of 0 ... count - 1, each value computed on its own.
 
-    i -> (a i + b) mod p, p the smallest prime that is not below `count`; an image from `count` on is
-    sent through again. a = 1 + floor(u_0 (p - 1)) and b = floor(u_1 p) are of item 0 of stream
+    i -> (a i + b) mod p, p the smallest prime that is not below `count`; an image from `count` on
+    is sent through again. a = 1 + floor(u_0 (p - 1)) and b = floor(u_1 p) are of item 0 of stream
     SHUFFLE. Modulo p any two numbers have any two others as images with equal probability, as in a
     permutation drawn from all: momentum that neighbours share is scattered. What goes through again
     changes that of two numbers by 2 (p - count) / p at most: 8e-4 of 50 000, for which p = 50 021.

@@ -42,9 +42,9 @@ def test_permutation_is_the_documented_one(count: int) -> None:
 
 @pytest.mark.parametrize(("count", "prime"), [(23, 23), (20, 23)])
 def test_every_pair_is_sent_everywhere_equally(count: int, prime: int) -> None:
-    # counts of (pi(i), pi(j)) = (k, l) over 20 000 steps, for neighbours and others: of a prime by
-    # chi-squared at 1e-6; else each pair of places has its share 1 / (p (p - 1)) before what is left
-    # goes through again, within 5.5 standard errors. Four pairs: false alarms once in 1e5 changes
+    # counts of (pi(i), pi(j)) = (k, l) over 20 000 steps, for neighbours and others. Of a prime: by
+    # chi-squared at 1e-6. Else each pair of places has its share 1 / (p (p - 1)) before what is
+    # left goes through again, within 5.5 standard errors. False alarms once in 1e5 changes
     steps = 20_000
     images = np.array(
         [random_solvent.permutation(count, CounterRandom(1, step)) for step in range(steps)]
