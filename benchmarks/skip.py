@@ -77,8 +77,9 @@ def removals(engine: str) -> list[Removal]:
     ]
     if engine == "mpc":
         found += [
-            Removal("hydrodynamics (bath)", slit, change(slit, hydrodynamics="bath"), engine),
-            Removal("hydrodynamics (shuffle)", slit, change(slit, hydrodynamics="shuffle"), engine),
+            Removal(f"hydrodynamics, for {random}", of, change(of, hydrodynamics=random), engine)
+            for of in (slit, chain)
+            for random in ("bath", "shuffle")
         ]
     return found
 

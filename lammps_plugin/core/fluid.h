@@ -44,6 +44,13 @@ template <int D> struct Fluid {
     return id_high.empty() ? id[i] : std::uint64_t{id_high[i]} << 32 | id[i];
   }
 
+  void numbers(int first, int count, std::uint64_t *of_each) const
+  {
+    for (int i = 0; i < count; ++i) of_each[i] = id[first + i];
+    if (id_high.empty()) return;
+    for (int i = 0; i < count; ++i) of_each[i] |= std::uint64_t{id_high[first + i]} << 32;
+  }
+
   Particle<D> particle(int i) const
   {
     Particle<D> p{static_cast<double>(number(i)), {}, {}};

@@ -86,14 +86,24 @@ inline double exponential(double x)
   return power * series;
 }
 
+// 1 / k! for k = 0 ... 17.
+constexpr std::array<double, 18> inverse_factorials()
+{
+  std::array<double, 18> inverses{1};
+  double factorial = 1;    // exact: all are below 2^53
+  for (int k = 1; k < 18; ++k) inverses[k] = 1 / (factorial *= k);
+  return inverses;
+}
+
 inline std::array<double, 2> cosine_and_sine_of_turn(double u)
 {
+  constexpr auto inverse = inverse_factorials();
   const int quarter = static_cast<int>(4 * u + 0.5);
   const double x = (4 * u - quarter) * M_PI_2, z = x * x;    // |x| <= pi / 4
-  double c = 1, s = 1;
-  for (int k = 16; k > 0; k -= 2) {
-    c = 1 - c * z * (1.0 / (k * (k - 1)));
-    s = 1 - s * z * (1.0 / (k * (k + 1)));
+  double c = inverse[16], s = inverse[17];
+  for (int k = 14; k >= 0; k -= 2) {
+    c = inverse[k] - z * c;
+    s = inverse[k + 1] - z * s;
   }
   s *= x;
   const double cosine = quarter & 1 ? s : c, sine = quarter & 1 ? c : s;

@@ -2,73 +2,83 @@
 
 #pragma once
 
-#include "fluid.h"
+#include "collision.h"
 #include "processes.h"
 
 namespace mpc {
 
+// What it does is begun at the collision, and done to a block of the fluid when somebody asks for the
+// velocities of after.
 template <int D> class RandomSolvent {
  public:
   virtual ~RandomSolvent() = default;
 
-  // Whether the collision is left out, as far as nobody but the fluid takes part in it.
+  // Whether the collision is left out, as far as nobody but the fluid takes part in it. Then nobody
+  // asks for the velocities of before.
   virtual bool replaces_collision() const = 0;
-  virtual void redraw(Fluid<D> &, const CounterRandom &, Processes &, double particles) = 0;
+
+  virtual void begin(const Fluid<D> &, const CounterRandom &, double particles) = 0;
+  virtual void collect(const Fluid<D> &, int /*begin*/, int /*end*/) {}    // the velocities of before
+  virtual void share(Processes &) {}
+  virtual void redraw(Fluid<D> &, int begin, int end) const = 0;
 };
 
-// A keyed permutation of 0 ... count - 1: a Feistel network of eight rounds on the pairs (number /
-// columns, number % columns), columns the smallest with columns^2 >= count. The few values from
-// count on go through again.
+// Number `number` of SplitMix64 (Steele, Lea and Flood, OOPSLA 2014), from 0 on.
+inline std::uint64_t split_mix(std::uint64_t seed, std::uint64_t number)
+{
+  std::uint64_t z = seed + (number + 1) * 0x9E3779B97F4A7C15u;
+  z = (z ^ z >> 30) * 0xBF58476D1CE4E5B9u;
+  z = (z ^ z >> 27) * 0x94D049BB133111EBu;
+  return z ^ z >> 31;
+}
+
+// A random permutation of 0 ... p - 1, p the smallest prime that is not below a count of at most 2^32:
+// i -> (factor i + term) mod p, factor and term random. It is one of 0 ... count - 1 when the few
+// values from count on go through again.
 class Permutation {
  public:
-  Permutation(std::uint64_t count, const CounterRandom &random) : count_(count)
+  explicit Permutation(std::uint64_t count) : count_(count), prime_(std::max<std::uint64_t>(count, 2))
   {
-    columns_ = static_cast<std::uint64_t>(std::sqrt(static_cast<double>(count)));
-    while (columns_ * columns_ < count) ++columns_;
-    rows_ = (count + columns_ - 1) / columns_;
-    for (int item = 0; item < 2; ++item) {
-      const auto words = random.words(Stream::Shuffle, item);
-      for (int word = 0; word < 4; ++word) keys_[4 * item + word] = words[word];
-    }
+    while (!is_prime(prime_)) ++prime_;
   }
 
-  // Of many numbers at a time: the first loop is vectorised.
-  void operator()(const std::uint32_t *numbers, std::uint32_t *images, int count) const
+  std::uint64_t count() const { return count_; }
+  std::uint64_t prime() const { return prime_; }
+
+  void draw(const CounterRandom &random)
   {
-    for (int i = 0; i < count; ++i) images[i] = once(numbers[i]);
-    for (int i = 0; i < count; ++i)
-      while (images[i] >= count_) images[i] = once(images[i]);
+    const auto u = uniforms(random.words(Stream::Shuffle, 0));
+    factor_ = 1 + static_cast<std::uint64_t>(u[0] * static_cast<double>(prime_ - 1));
+    term_ = static_cast<std::uint64_t>(u[1] * static_cast<double>(prime_));
+  }
+
+  // Vectorised in a loop. The quotient in floating point is wrong by one at most.
+  std::uint64_t once(std::uint64_t number) const
+  {
+    const std::uint64_t product = factor_ * number + term_;
+    const double quotient = static_cast<double>(product) * (1 / static_cast<double>(prime_));
+    const std::uint64_t rest = product - static_cast<std::uint64_t>(quotient) * prime_;
+    const auto signed_rest = static_cast<std::int64_t>(rest);
+    return signed_rest < 0 ? rest + prime_ : rest >= prime_ ? rest - prime_ : rest;
+  }
+
+  // Of a number from count on, what it comes to below; or itself, in a cycle that nothing leads to.
+  std::uint64_t below(std::uint64_t number) const
+  {
+    auto image = once(number);
+    while (image >= count_ && image != number) image = once(image);
+    return image;
   }
 
  private:
-  std::uint32_t once(std::uint32_t number) const
+  static bool is_prime(std::uint64_t number)
   {
-    auto row = static_cast<std::uint64_t>(static_cast<double>(number) / columns_);
-    auto column = number - row * columns_;
-    for (int round = 0; round < 8; round += 2) {
-      row = moved(row, column + keys_[round], rows_);
-      column = moved(column, row + keys_[round + 1], columns_);
-    }
-    return static_cast<std::uint32_t>(row * columns_ + column);
+    for (std::uint64_t divisor = 2; divisor * divisor <= number; ++divisor)
+      if (number % divisor == 0) return false;
+    return true;
   }
 
-  // By a pseudorandom distance, around `count` places.
-  static std::uint64_t moved(std::uint64_t place, std::uint64_t key, std::uint64_t count)
-  {
-    place += (mix(key) >> 32) * count >> 32;
-    return place < count ? place : place - count;
-  }
-
-  // The finaliser of SplitMix64.
-  static std::uint64_t mix(std::uint64_t z)
-  {
-    z = (z ^ z >> 30) * 0xBF58476D1CE4E5B9u;
-    z = (z ^ z >> 27) * 0x94D049BB133111EBu;
-    return z ^ z >> 31;
-  }
-
-  std::uint64_t count_, rows_, columns_;
-  std::array<std::uint64_t, 8> keys_;
+  std::uint64_t count_, prime_, factor_ = 1, term_ = 0;
 };
 
 // Particle i takes the velocity of particle pi(i). Every process sees all velocities for this: a
@@ -77,56 +87,96 @@ template <int D> class ShuffledSolvent : public RandomSolvent<D> {
  public:
   bool replaces_collision() const override { return false; }
 
-  void redraw(Fluid<D> &fluid, const CounterRandom &random, Processes &processes,
-              double particles) override
+  void begin(const Fluid<D> &fluid, const CounterRandom &random, double particles) override
   {
-    const Permutation permutation(static_cast<std::uint64_t>(particles), random);
-    std::vector<std::uint32_t> other(fluid.size());
-    permutation(fluid.id.data(), other.data(), fluid.size());
-    std::vector<double> all(static_cast<std::size_t>(particles));
-    for (auto &component : fluid.v) {
-      std::fill(all.begin(), all.end(), 0.0);
-      for (int i = 0; i < fluid.size(); ++i) all[fluid.id[i]] = component[i];
-      processes.sum(all.data(), static_cast<int>(particles));
-      for (int i = 0; i < fluid.size(); ++i) component[i] = all[other[i]];
+    const auto count = static_cast<std::uint64_t>(particles);
+    if (permutation_.count() != count) permutation_ = Permutation(count);
+    permutation_.draw(random);
+    all_.resize(permutation_.prime());
+    if (fluid.size() < particles) std::fill(all_.begin(), all_.end(), Pack<D>{});
+  }
+
+  void collect(const Fluid<D> &fluid, int begin, int end) override
+  {
+    for (int i = begin; i < end; ++i) {
+      auto &velocity = all_[fluid.id[i]];
+      if constexpr (D == 2)
+        velocity = pack(fluid.v[0][i], fluid.v[1][i]);
+      else
+        velocity = pack(fluid.v[0][i], fluid.v[1][i], fluid.v[2][i]);
     }
   }
+
+  void share(Processes &processes) override
+  {
+    auto *values = reinterpret_cast<double *>(all_.data());
+    const auto count = permutation_.count(), size = count * (sizeof(Pack<D>) / sizeof(double));
+    constexpr std::uint64_t MOST = 1 << 24;    // in a message
+    for (std::uint64_t first = 0; first < size; first += MOST)
+      processes.sum(values + first, static_cast<int>(std::min(MOST, size - first)));
+    for (auto beyond = count; beyond < all_.size(); ++beyond)
+      all_[beyond] = all_[permutation_.below(beyond)];
+  }
+
+  void redraw(Fluid<D> &fluid, int begin, int end) const override
+  {
+    constexpr int BLOCK = 128;    // particles
+    std::array<std::uint32_t, BLOCK> other;
+    for (int first = begin; first < end; first += BLOCK) {
+      const int count = std::min(BLOCK, end - first);
+      for (int i = 0; i < count; ++i) other[i] = permutation_.once(fluid.id[first + i]);
+      for (int i = 0; i < count; ++i) {
+        const auto velocity = all_[other[i]];
+        for (int a = 0; a < D; ++a) fluid.v[a][first + i] = velocity[a];
+      }
+    }
+  }
+
+ private:
+  Permutation permutation_{1};
+  Array<Pack<D>> all_;    // of all processes, by number
 };
 
-// All velocities are drawn anew from the Maxwell distribution.
+// All velocities are drawn anew from the Maxwell distribution. Word k of particle i is number i of
+// SplitMix64 from key_k, the four keys a block of Philox: one for each particle would take longer than
+// all else that the particle does.
 template <int D> class BathSolvent : public RandomSolvent<D> {
  public:
   explicit BathSolvent(double temperature) : speed_(std::sqrt(temperature)) {}
 
   bool replaces_collision() const override { return true; }
 
-  void redraw(Fluid<D> &fluid, const CounterRandom &random, Processes &, double) override
+  void begin(const Fluid<D> &, const CounterRandom &random, double) override
   {
-    constexpr int words_used = D + D % 2;    // normals come in pairs
-    std::array<std::array<double, BLOCK>, words_used> u;
-    for (int begin = 0; begin < fluid.size(); begin += BLOCK) {
-      const int count = std::min(BLOCK, fluid.size() - begin);
-      for (int i = 0; i < count; ++i) {
-        const auto words = random.words(Stream::Bath, fluid.number(begin + i));
-        for (int word = 0; word < words_used; ++word) u[word][i] = uniform(words[word]);
-      }
-      for (int a = 0; a < D; a += 2) {
-        double *first = fluid.v[a].data() + begin;
-        double *second = a + 1 < D ? fluid.v[a + 1].data() + begin : unused_.data();
+    keys_ = random.words(Stream::Bath, 0);
+  }
+
+  // In blocks, whose loops are vectorised.
+  void redraw(Fluid<D> &fluid, int begin, int end) const override
+  {
+    constexpr int BLOCK = 128;    // particles
+    std::array<std::uint64_t, BLOCK> numbers;
+    std::array<std::array<double, BLOCK>, 4> u, z;
+    for (int first = begin; first < end; first += BLOCK) {
+      const int count = std::min(BLOCK, end - first);
+      fluid.numbers(first, count, numbers.data());
+      for (int k = 0; k < D + D % 2; ++k)    // normals come in pairs
+        for (int i = 0; i < count; ++i)
+          u[k][i] = uniform(split_mix(keys_[k], numbers[i]));
+      for (int k = 0; k < D; k += 2)
         for (int i = 0; i < count; ++i) {
-          const auto z = normal_pair(u[a][i], u[a + 1][i]);
-          first[i] = speed_ * z[0];
-          second[i] = speed_ * z[1];
+          const auto pair = normal_pair(u[k][i], u[k + 1][i]);
+          z[k][i] = pair[0];
+          z[k + 1][i] = pair[1];
         }
-      }
+      for (int a = 0; a < D; ++a)
+        for (int i = 0; i < count; ++i) fluid.v[a][first + i] = speed_ * z[a][i];
     }
   }
 
  private:
-  static constexpr int BLOCK = 256;    // particles; their loops are vectorised
-
   double speed_;
-  std::array<double, BLOCK> unused_;    // the fourth normal of each block in 3D
+  Words keys_{};
 };
 
 }    // namespace mpc

@@ -53,7 +53,7 @@ template <int D> class Solver {
              const std::array<int, D> &upper)
   {
     fluid_.clear();
-    turning_ = false;
+    turning_ = redrawing_ = false;
     collisions_ = collisions;
     set_cells(lower, upper);
     grid_.shift = {};
@@ -90,8 +90,8 @@ template <int D> class Solver {
   // Velocities as they are after the last collision.
   void turn()
   {
-    if (turning_) turn(0, fluid_.size());
-    turning_ = false;
+    renew(0, fluid_.size());
+    turning_ = redrawing_ = false;
   }
 
   void zero_momentum()
@@ -175,16 +175,24 @@ template <int D> class Solver {
 
   bool reflecting() const { return method_.coupling && method_.coupling->after_flight(); }
 
+  // Where colloids join, it is by the collision that they meet even a fluid to be redrawn.
+  bool joining() const { return method_.coupling && method_.coupling->in_collision(); }
+
+  bool collides() const
+  {
+    return joining() || !method_.random_solvent || !method_.random_solvent->replaces_collision();
+  }
+
   // All that the coupling does not take, to the end of the interval and into the sums of the cells.
   void move()
   {
     auto *coupling = method_.coupling.get();
-    std::fill(sums_.of.begin(), sums_.of.end(), CellSum<D>{});
+    if (collides()) std::fill(sums_.of.begin(), sums_.of.end(), CellSum<D>{});
     strays_.clear();
     held_.clear();
     for (int begin = 0; begin < fluid_.size(); begin += BLOCK) {
       const int end = std::min(begin + BLOCK, fluid_.size());
-      if (turning_) turn(begin, end);
+      renew(begin, end);
       const auto before = coupling ? coupling->taken().size() : 0;
       if (coupling) coupling->take(fluid_, begin, end);
       fly(begin, end);
@@ -195,7 +203,7 @@ template <int D> class Solver {
       if (reflecting()) hold(begin, end);
       sum(begin, end);
     }
-    turning_ = false;
+    turning_ = redrawing_ = false;
   }
 
   void set_cells(const std::array<int, D> &lower, const std::array<int, D> &upper)
@@ -231,6 +239,12 @@ template <int D> class Solver {
       __builtin_prefetch(fluid_.v[a].data() + i, 1);
     }
     __builtin_prefetch(fluid_.cell.data() + i, 1);
+  }
+
+  void renew(int begin, int end)
+  {
+    if (turning_) turn(begin, end);
+    if (redrawing_) method_.random_solvent->redraw(fluid_, begin, end);
   }
 
   void turn(int begin, int end)
@@ -304,21 +318,26 @@ template <int D> class Solver {
 
   void sum(int begin, int end)
   {
+    if (!collides()) {
+      for (int i = begin; i < end; ++i)
+        if (fluid_.cell[i] < 0) settle(i);
+      return;
+    }
     constexpr int line = CACHE_LINE / sizeof(double);
     for (int i = begin; i < end; ++i) {
       if (i % line == 0) prefetch_state(i + BLOCK);    // of the next block
       if constexpr (D == 3) prefetch(sums_.of, i);
-      int cell = fluid_.cell[i];
-      if (cell < 0) {
-        if (cell == TAKEN) continue;
-        cell = fluid_.cell[i] = find(i);
-        if (cell < 0) {
-          strays_.push_back(i);
-          continue;
-        }
-      }
-      add_to(sums_.of[cell], i);
+      if (fluid_.cell[i] >= 0 || settle(i)) add_to(sums_.of[fluid_.cell[i]], i);
     }
+  }
+
+  // Whether a stray is in a cell of this process after all.
+  bool settle(int i)
+  {
+    if (fluid_.cell[i] == TAKEN) return false;
+    fluid_.cell[i] = find(i);
+    if (fluid_.cell[i] < 0) strays_.push_back(i);
+    return fluid_.cell[i] >= 0;
   }
 
   // Keep back what has met colloids.
@@ -431,10 +450,8 @@ template <int D> class Solver {
     auto *coupling = method_.coupling.get();
     auto *solvent = method_.random_solvent.get();
     auto *thermostat = method_.thermostat.get();
-    // where colloids join, it is by the collision that they meet even a fluid to be redrawn
-    const bool joining = coupling && coupling->in_collision();
-    if (joining || !solvent || !solvent->replaces_collision()) {
-      if (joining) coupling->join(grid_, colloids, sums_, processes_);
+    if (collides()) {
+      if (joining()) coupling->join(grid_, colloids, sums_, processes_);
       make_turns(random);
       turning_ = true;
       if (thermostat) {
@@ -445,11 +462,19 @@ template <int D> class Solver {
           thermostat->redraw(fluid_, random);
         }
       }
-      if (joining) coupling->turn(turns_, processes_);
+      if (joining()) coupling->turn(turns_, processes_);
     }
     if (solvent) {
-      turn();
-      solvent->redraw(fluid_, random, processes_, particles_);
+      solvent->begin(fluid_, random, particles_);
+      if (!solvent->replaces_collision())
+        for (int begin = 0; begin < fluid_.size(); begin += BLOCK) {
+          const int end = std::min(begin + BLOCK, fluid_.size());
+          if (turning_) turn(begin, end);
+          solvent->collect(fluid_, begin, end);
+        }
+      solvent->share(processes_);
+      turning_ = false;
+      redrawing_ = true;
     }
     ++collisions_;
   }
@@ -478,6 +503,7 @@ template <int D> class Solver {
   CellSums<D> sums_;
   Array<Turn<D>> turns_;       // of the last collision
   bool turning_ = false;             // whether they are still to be applied
+  bool redrawing_ = false;           // and whether the random solvent is to redraw after them
   std::vector<int> strays_;          // indices of particles in no cell of this process
   std::vector<int> held_;            // particles that have met colloids
   std::vector<Particle<D>> travelling_;

@@ -6,9 +6,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from lammps_inputs.system import Array
-from srd_driver.reference.counter_random import CounterRandom, Stream, Words
-
-ROUNDS = 8
+from srd_driver.reference.counter_random import CounterRandom, Stream, Words, box_muller, uniform
 
 
 def shuffle(velocities: Array, random: CounterRandom) -> None:
@@ -20,47 +18,56 @@ def shuffle(velocities: Array, random: CounterRandom) -> None:
 
 
 def permutation(count: int, random: CounterRandom) -> NDArray[np.intp]:
-    """A keyed permutation pi of 0 ... count - 1, each value computed on its own.
+    """A random permutation pi of 0 ... count - 1, each value computed on its own.
 
-    A Feistel network of eight rounds on a table of `count` places or a few more: it has c columns,
-    c the smallest with c^2 >= count, and r = ceil(count / c) rows. Even rounds move the row around
-    by floor(f r / 2^32), f the upper 32 bits of mix(column + key_k); odd rounds move the column in
-    the same way by what the row says. A value from count on is sent through the network again. The
-    key of round k is word k of stream SHUFFLE: items 0 and 1, four words each.
+    i -> (a i + b) mod p, p the smallest prime that is not below `count`; an image from `count` on
+    is sent through again. a = 1 + floor(u_0 (p - 1)) and b = floor(u_1 p) are of item 0 of stream
+    SHUFFLE. Modulo p any two numbers have any two others as images with equal probability, as in a
+    permutation drawn from all: momentum that neighbours share is scattered. What goes through again
+    changes that of two numbers by 2 (p - count) / p at most: 8e-4 of 50 000, for which p = 50 021.
     """
-    columns = math.isqrt(count - 1) + 1
-    sizes = np.array([-(-count // columns), columns], dtype=np.uint64)
-    keys = random.words(Stream.SHUFFLE, ROUNDS // 4).T.ravel()
-    image = _feistel(np.arange(count, dtype=np.uint64), sizes, keys)
+    prime = _prime_from(count)
+    u = random.uniform(Stream.SHUFFLE, 1)[:2, 0]
+    factor, term = (np.uint64(x) for x in (1 + int(u[0] * (prime - 1)), int(u[1] * prime)))
+
+    def once(numbers: Words) -> Words:
+        images: Words = (factor * numbers + term) % np.uint64(prime)
+        return images
+
+    image = once(np.arange(count, dtype=np.uint64))
     beyond = np.flatnonzero(image >= count)
     while beyond.size:
-        image[beyond] = _feistel(image[beyond], sizes, keys)
+        image[beyond] = once(image[beyond])
         beyond = beyond[image[beyond] >= count]
     return image.astype(np.intp)
 
 
-def _feistel(numbers: Words, sizes: Words, keys: Words) -> Words:
-    place = list(np.divmod(numbers, sizes[1]))
-    for k, key in enumerate(keys):
-        half = k % 2
-        distance = (_mix(place[1 - half] + key) >> np.uint64(32)) * sizes[half] >> np.uint64(32)
-        place[half] = (place[half] + distance) % sizes[half]
-    image: Words = place[0] * sizes[1] + place[1]
-    return image
-
-
-def _mix(z: Words) -> Words:
-    """The finaliser of SplitMix64, modulo 2^64."""
-    z = (z ^ (z >> np.uint64(30))) * np.uint64(0xBF58476D1CE4E5B9)
-    z = (z ^ (z >> np.uint64(27))) * np.uint64(0x94D049BB133111EB)
-    return z ^ (z >> np.uint64(31))
+def _prime_from(number: int) -> int:
+    """The smallest prime that is not below a number."""
+    prime = max(number, 2)
+    while any(prime % divisor == 0 for divisor in range(2, math.isqrt(prime) + 1)):
+        prime += 1
+    return prime
 
 
 def bath(velocities: Array, random: CounterRandom) -> None:
     """Draw all velocities anew from the Maxwell distribution at kBT = m_f = 1, in place.
 
     Each component has the standard deviation sqrt(kBT / m_f), which the paper calls the variance.
-    Particle i takes the first d normals of its block of stream BATH.
+    Particle i takes the first d normals, by Box-Muller, of four words: word k is number i of
+    SplitMix64 from the seed key_k. The keys are the words of item 0 of stream BATH: seeds of their
+    own for each collision. A block of Philox for each particle would take longer than all else that
+    the particle does.
     """
     dimensions, particles = velocities.shape
-    velocities[:] = random.normal(Stream.BATH, particles)[:dimensions]
+    words = split_mix(random.words(Stream.BATH, 1), np.arange(particles, dtype=np.uint64))
+    velocities[:] = box_muller(uniform(words))[:dimensions]
+
+
+def split_mix(seeds: Words, numbers: Words) -> Words:
+    """Numbers 0, 1, ... of SplitMix64 (Steele, Lea and Flood, OOPSLA 2014), modulo 2^64."""
+    z = seeds + (numbers + np.uint64(1)) * np.uint64(0x9E3779B97F4A7C15)
+    z = (z ^ (z >> np.uint64(30))) * np.uint64(0xBF58476D1CE4E5B9)
+    z = (z ^ (z >> np.uint64(27))) * np.uint64(0x94D049BB133111EB)
+    words: Words = z ^ (z >> np.uint64(31))
+    return words

@@ -212,12 +212,45 @@ void numbers_have_more_than_32_bits()
 
 void the_permutation_is_one()
 {
-  for (int count : {1, 2, 5, 16, 17, 1000}) {
-    std::vector<std::uint32_t> numbers(count), images(count);
-    std::iota(numbers.begin(), numbers.end(), 0);
-    Permutation(count, CounterRandom{9, 4})(numbers.data(), images.data(), count);
-    CHECK(std::is_permutation(images.begin(), images.end(), numbers.begin()));
+  for (int count : {1, 2, 5, 16, 17, 24, 1000})
+    for (std::uint64_t collision = 0; collision < 50; ++collision) {
+      Permutation permutation(count);
+      permutation.draw({9, collision});
+      std::vector<std::uint64_t> numbers(count), images(count);
+      std::iota(numbers.begin(), numbers.end(), 0);
+      for (int i = 0; i < count; ++i) {
+        const auto image = permutation.once(i);
+        images[i] = image < images.size() ? image : permutation.below(image);
+      }
+      CHECK(std::is_permutation(images.begin(), images.end(), numbers.begin()));
+    }
+}
+
+// (factor i + term) mod p in whole numbers, for the largest prime below 2^31.
+void quotients_of_the_permutation_are_exact()
+{
+  constexpr std::uint64_t prime = (std::uint64_t{1} << 31) - 1;
+  Permutation permutation(prime);
+  CHECK(permutation.prime() == prime);
+  for (std::uint64_t collision = 0; collision < 1000; ++collision) {
+    const CounterRandom random{1, collision};
+    permutation.draw(random);
+    const auto u = uniforms(random.words(Stream::Shuffle, 0));
+    const auto factor = 1 + static_cast<std::uint64_t>(u[0] * (prime - 1));
+    const auto term = static_cast<std::uint64_t>(u[1] * prime);
+    for (std::uint64_t i : {std::uint64_t{0}, std::uint64_t{1}, prime / 2, prime - 2, prime - 1}) {
+      CHECK(permutation.once(i) == (factor * i + term) % prime);
+      const auto zero = (prime - term) % prime;    // images about 0 and p
+      CHECK(permutation.once(zero) == (factor * zero + term) % prime);
+    }
   }
+}
+
+// Those that its authors' program gives.
+void split_mix_known_answers()
+{
+  CHECK(split_mix(1234567, 0) == 6457827717110365317u);
+  CHECK(split_mix(1234567, 1) == 3203168211198807973u);
 }
 
 void logarithm_cosine_and_sine_are_those_of_the_c_library()
@@ -689,6 +722,8 @@ int main()
   a_particle_that_meets_the_walls_too_often_is_named();
   numbers_have_more_than_32_bits();
   the_permutation_is_one();
+  quotients_of_the_permutation_are_exact();
+  split_mix_known_answers();
   logarithm_cosine_and_sine_are_those_of_the_c_library();
   momentum_and_energy_are_kept();
   thermostats_reach_their_temperature();

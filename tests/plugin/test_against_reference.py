@@ -21,6 +21,7 @@ FEWER = {"claylike, cell": 8}  # 2000 steps of charged spheres; their chaos gain
 TOLERANCE = 1e-9  # rounding grows by about 1e3 in 30 collisions with colloids: 1e-13 is typical
 
 BULK3D = {"dimension": 3, "length": 6, "width": 8, "height": 7}
+CHAIN = {"colloids": 3, "length": 21, "gravity": 2.0}
 DRIVEN = {"length": 12, "width": 9.5, "gravity": 0.02}
 NAMED: dict[str, tuple[str, dict[str, Any]]] = {
     "bulk 2D": ("bulk", {"thermostat": "none", "length": 13, "width": 17, "angle": 130}),
@@ -35,7 +36,9 @@ NAMED: dict[str, tuple[str, dict[str, Any]]] = {
     "slit, andersen": ("poiseuille", {**DRIVEN, "thermostat": "andersen"}),
     "slit, shuffle": ("poiseuille", {**DRIVEN, "hydrodynamics": "shuffle"}),
     "slit, bath": ("poiseuille", {**DRIVEN, "hydrodynamics": "bath"}),
-    "colloids": ("channel", {"colloids": 3, "length": 21, "gravity": 2.0}),
+    "colloids": ("channel", CHAIN),
+    "colloids, shuffle": ("channel", {**CHAIN, "hydrodynamics": "shuffle"}),
+    "colloids, bath": ("channel", {**CHAIN, "hydrodynamics": "bath"}),
 }
 CLAY: dict[str, dict[str, Any]] = {
     "claylike, cell": {"cells": 6, "density": 5.0, "volume_fraction": 0.1, "peclet": 2.0},
@@ -54,6 +57,7 @@ CASES: dict[str, Scene] = {
     **{case: make_scene(name, **fields) for case, (name, fields) in NAMED.items()},
     "slit 3D, layer": Slit3D.make(diagonal=True),
     "slit 3D, random axis": Slit3D.make(rotation="random_axis", angle=120, thermostat="none"),
+    "slit 3D, bath": Slit3D.make(hydrodynamics="bath"),
     "slit 3D, shuffle": Slit3D.make(hydrodynamics="shuffle", thermostat="monte_carlo"),
     "two species of colloids, slit 3D": Mixture3D.make(),
 }
@@ -62,6 +66,10 @@ PARALLEL = [
     *(("colloids", ranks) for ranks in (2, 3, 4)),
     *(("slit, layer", ranks) for ranks in (2, 3)),
     ("slit, shuffle", 2),
+    ("slit 3D, shuffle", 3),
+    ("slit 3D, bath", 3),
+    ("colloids, shuffle", 2),
+    ("colloids, bath", 2),
     ("bulk 2D", 4),
     ("bulk 3D, random axis", 4),
     ("slit 3D, layer", 2),

@@ -55,6 +55,20 @@ def test_continues_on_other_processes(
     assert largest_difference(end, uninterrupted[scene], of) < TOLERANCE
 
 
+@pytest.mark.parametrize(("hydrodynamics", "ranks"), [("bath", 1), ("bath", 2), ("shuffle", 1)])
+def test_a_random_solvent_continues_to_the_last_bit(
+    hydrodynamics: str, ranks: int, tmp_path: Path, command: Run
+) -> None:
+    of = make_scene("poiseuille", length=12, width=9.5, gravity=0.02, hydrodynamics=hydrodynamics)
+    whole = run_mpc(of, WHOLE, tmp_path / "whole", command, ranks)
+    parts = tmp_path / "parts"
+    run_mpc(of, HALF, parts, command, ranks, end="write_restart half.restart\n")
+    start = Start(HALF * of.system.clock.steps_per_collision, "half.restart")
+    end = run_mpc(of, WHOLE, parts, command, ranks, start=start)
+    np.testing.assert_array_equal(end.fluid_positions, whole.fluid_positions)
+    np.testing.assert_array_equal(end.fluid_velocities, whole.fluid_velocities)
+
+
 @pytest.mark.parametrize(
     ("accident", "complaint"),
     [
