@@ -6,7 +6,7 @@ t0. A scene builds its `System` from them; an engine refuses the parts that it d
 
 import math
 from collections.abc import Iterator
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Any, Literal, Protocol, Self, runtime_checkable
 
 import numpy as np
@@ -454,6 +454,9 @@ TRAJECTORY = Output(
     "trajectory.lammpsdump",
     "trajectory",
     ("id", "type", "x", "y", "z", "vx", "vy", "vz", "ix", "iy", "iz"),
+)
+SPINNING_TRAJECTORY = replace(
+    TRAJECTORY, columns=(*TRAJECTORY.columns, "omegax", "omegay", "omegaz")
 )
 FLUID_PROFILE = Output(
     "fluid_profile.dat", "profile", ("Coord1", "Ncount", "density/number", "vx", "temp")

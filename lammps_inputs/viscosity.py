@@ -138,6 +138,24 @@ def mobility_in_cells(solvent: Solvent, mass: float, dimensions: int) -> float:
     return solvent.collision_time / mass * (1 / (1 - share) - 0.5)
 
 
+def rotational_mobility(solvent: Solvent, radius: float) -> float:
+    """Angular velocity over torque of a lone sphere that reflects the fluid thermally [t0/m_f a0^2].
+
+    Fluid that leaves with the velocity of the surface, on average, takes the torque
+    (4/3) sqrt(2 pi) n R^4 omega from a sphere that spins through fluid at rest. About a sphere that
+    spins slowly the fluid is u = omega R^3 sin(theta) / r^2, whose torque is
+    8 pi R^3 (eta_kin + 2/3 eta_coll): the collisional stress is eta_coll du_phi/dr alone, without
+    -u_phi / r, as collisions do not conserve angular momentum. The two slips add, as in
+    J. Padding et al., J. Phys.: Condens. Matter 17, S3393 (2005). kBT = 1, so this is D_r too.
+    """
+    nu = solvent_viscosity(solvent, dimensions=3)
+    shear = solvent.density * (nu.kinetic + 2 / 3 * nu.collisional)
+    hydrodynamic = 8 * math.pi * radius**3 * shear
+    speed = math.sqrt(2 * math.pi * solvent.temperature)
+    free_molecular = 4 / 3 * speed * solvent.density * radius**4
+    return 1 / hydrodynamic + 1 / free_molecular
+
+
 def _colliding(density: float) -> float:
     """(M - 1 + e^-M) / M, the mean of 1 - 1/n over the particles of Poisson cells."""
     if density < 1e-4:  # where the difference has no digits left

@@ -19,6 +19,7 @@ from lammps_inputs.quantities import si
 from lammps_inputs.scene import NonNegative, Positive, Scene
 from lammps_inputs.system import (
     FLUID_PROFILE,
+    SPINNING_TRAJECTORY,
     SUSPENSION_AVERAGES,
     TRAJECTORY,
     Box,
@@ -294,6 +295,8 @@ class Claylike(Scene):
             walls = (*slit(0, repulsion), *slit(1, repulsion))
         closed = {wall.axis for wall in walls}
         between = self.between
+        turned = self.coupling == "reflection"  # by the fluid: coupling II gives no torque
+        trajectory = SPINNING_TRAJECTORY if turned else TRAJECTORY
         return System(
             box=Box((float(self.cells),) * 3, tuple(axis not in closed for axis in range(3))),
             clock=Clock.of_times(
@@ -318,13 +321,14 @@ class Claylike(Scene):
                 coupling=self.coupling,
                 drift_interval=0 if walls or self.hydrodynamics == "bath" else DRIFT_INTERVAL,
             ),
-            outputs=(TRAJECTORY, FLUID_PROFILE, SUSPENSION_AVERAGES),
+            outputs=(trajectory, FLUID_PROFILE, SUSPENSION_AVERAGES),
             measures=(
                 "fluid_temperature",
                 "colloid_temperature",
                 "rotational_temperature",
                 "sedimentation",
                 "suspension_diffusion",
+                *(("rotational_diffusion",) if turned else ()),
                 "velocity_distribution",
                 *(("clusters",) if self.colloids > 1 else ()),
                 *(("radial_distribution",) if self.colloids > 1 and not walls else ()),

@@ -7,6 +7,7 @@ import numpy as np
 
 from lammps_inputs import InitialState, Scene, initial_state
 from lammps_inputs.potentials.dlvo import Dlvo
+from lammps_inputs.system import Array
 from srd_driver.reference.boundaries import Boundaries
 from srd_driver.reference.engine import ReferenceEngine
 from srd_driver.reference.faults import SimulationFault
@@ -75,6 +76,11 @@ class SuspensionEngine(ReferenceEngine):
             except SimulationFault as fault:
                 raise SimulationFault(f"step {self._step}: {fault}") from None
             self.collisions += 1
+
+    @property
+    def colloid_spins(self) -> Array:
+        """Angular velocities (N, 3) [1/t0]."""
+        return self._spins.T
 
     def averages(self) -> dict[str, float]:
         """What tables average, by column."""
