@@ -139,21 +139,22 @@ def mobility_in_cells(solvent: Solvent, mass: float, dimensions: int) -> float:
 
 
 def rotational_mobility(solvent: Solvent, radius: float) -> float:
-    """Angular velocity over torque of a lone sphere that reflects the fluid thermally [t0/m_f a0^2].
+    """Angular velocity over torque of a lone sphere that reflects the fluid [t0/m_f a0^2].
 
-    Fluid that leaves with the velocity of the surface, on average, takes the torque
-    (4/3) sqrt(2 pi) n R^4 omega from a sphere that spins through fluid at rest. About a sphere that
-    spins slowly the fluid is u = omega R^3 sin(theta) / r^2, whose torque is
-    8 pi R^3 (eta_kin + 2/3 eta_coll): the collisional stress is eta_coll du_phi/dr alone, without
-    -u_phi / r, as collisions do not conserve angular momentum. The two slips add, as in
-    J. Padding et al., J. Phys.: Condens. Matter 17, S3393 (2005). kBT = 1, so this is D_r too.
+    With kBT = 1 its D_r too. Fluid at rest that leaves with the velocity of the surface takes the
+    torque xi_E omega, xi_E = (4/3) sqrt(2 pi) n R^4: all there is without hydrodynamics. With them
+    the fluid follows, as Debye has it, and slips (J. C. Maxwell, Phil. Trans. 170, 231, 1879): the
+    fluid that flows in brings half of the kinetic stress, so that the rest is xi_E times the slip.
+    The mobility is 1 / (8 pi eta R^3) + (1 - eta_kin / (2 eta)) / xi_E, to first order in mean free
+    path and cell over R.
     """
-    nu = solvent_viscosity(solvent, dimensions=3)
-    shear = solvent.density * (nu.kinetic + 2 / 3 * nu.collisional)
-    hydrodynamic = 8 * math.pi * radius**3 * shear
     speed = math.sqrt(2 * math.pi * solvent.temperature)
     free_molecular = 4 / 3 * speed * solvent.density * radius**4
-    return 1 / hydrodynamic + 1 / free_molecular
+    if solvent.hydrodynamics != "on":
+        return 1 / free_molecular
+    nu = solvent_viscosity(solvent, dimensions=3)
+    debye = 8 * math.pi * solvent.density * nu.total * radius**3
+    return 1 / debye + (1 - nu.kinetic / nu.total / 2) / free_molecular
 
 
 def _colliding(density: float) -> float:
