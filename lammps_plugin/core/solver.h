@@ -119,6 +119,15 @@ template <int D> class Solver {
     return total;
   }
 
+  // That the walls have taken up in the last interval and its collision, of all processes.
+  FaceVectors<D> momentum_of_walls()
+  {
+    FaceVectors<D> total{};
+    if (method_.walls) total = method_.walls->taken();
+    processes_.sum(total[0].data(), 2 * D * D);
+    return total;
+  }
+
   // Let the coupling know the forces between intervals; nothing moves.
   void find_near(const std::vector<Colloid<D>> &colloids, double colloid_speed)
   {
@@ -131,6 +140,7 @@ template <int D> class Solver {
   void begin_interval(const std::vector<Colloid<D>> &colloids, double colloid_speed)
   {
     if (collisions_ % SORT_INTERVAL == 0) tiles_.sort(fluid_, grid_);
+    if (method_.walls) method_.walls->forget();
     auto *coupling = method_.coupling.get();
     if (coupling) coupling->begin(grid_, colloids, colloid_speed);
     draw_shift(collisions_);
@@ -445,6 +455,7 @@ template <int D> class Solver {
           thermostat->redraw(fluid_, random);
         }
       }
+      for (const auto &[cell, cut] : cut_) method_.walls->take(cut, lost(cell));
       if (joining) coupling->turn(turns_, processes_);
     }
     if (solvent) {
@@ -460,13 +471,24 @@ template <int D> class Solver {
       method_.rotation.draw(random, grid_.number(rows), turns_[cell]);
       fix_point<D>(turns_[cell], sums_.mean(cell));
     });
+    cut_.clear();
     if (!method_.walls) return;
     const auto &walls = *method_.walls;
     grid_.each_cell([&](int cell, const std::array<int, D> &rows) {
-      if (const auto cut = walls.cutting(grid_, rows); cut.count > 0)
-        fix_point<D>(turns_[cell],
-                     walls.mean_of_cut(cut, sums_, cell, random, grid_.number(rows)));
+      const auto cut = walls.cutting(grid_, rows);
+      if (cut.count == 0) return;
+      fix_point<D>(turns_[cell], walls.mean_of_cut(cut, sums_, cell, random, grid_.number(rows)));
+      cut_.push_back({cell, cut});
     });
+  }
+
+  // Momentum that what is in a cell loses in its turn.
+  Vector<D> lost(int cell) const
+  {
+    const auto mean = sums_.mean(cell), after = turns_[cell].apply(mean);
+    Vector<D> lost;
+    for (int a = 0; a < D; ++a) lost[a] = sums_.mass(cell) * (mean[a] - after[a]);
+    return lost;
   }
 
   Grid<D> grid_;
@@ -477,6 +499,7 @@ template <int D> class Solver {
   std::uint64_t collisions_ = 0;
   CellSums<D> sums_;
   Array<Turn<D>> turns_;       // of the last collision
+  std::vector<std::pair<int, Cut<D>>> cut_;    // cells that walls cut
   bool turning_ = false;             // whether they are still to be applied
   std::vector<int> strays_;          // indices of particles in no cell of this process
   std::vector<int> held_;            // particles that have met colloids
