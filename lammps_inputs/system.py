@@ -472,7 +472,13 @@ SUSPENSION_AVERAGES = Output(
         "fluid_velocity_x",
         "fluid_velocity_z",
         "rotational_temperature",
+        *(f"fluid_skewness_{axis}" for axis in "xyz"),
+        *(f"fluid_kurtosis_{axis}" for axis in "xyz"),
     ),
+)
+SHEARED_AVERAGES = replace(
+    SUSPENSION_AVERAGES,
+    columns=(*SUSPENSION_AVERAGES.columns, "lower_wall_force_x", "upper_wall_force_x"),
 )
 PARTICLE_AVERAGES = Output(
     "observables.dat", "table", ("temperature", "potential_energy", "mean_velocity_x")

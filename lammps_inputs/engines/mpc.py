@@ -166,6 +166,12 @@ class Mpc(LammpsEngine):
             yield f"variable mean_velocity_z equal {momentum}/(f_solvent[4]+mass({group}))"
             yield "variable fluid_velocity_x equal f_solvent[1]/f_solvent[4]"
             yield "variable fluid_velocity_z equal f_solvent[3]/f_solvent[4]"
+            for number, axis in enumerate("xyz", start=6):
+                yield f"variable fluid_skewness_{axis} equal f_solvent[{number}]"
+                yield f"variable fluid_kurtosis_{axis} equal f_solvent[{number + 3}]"
+            if system.walls_on(2):
+                yield "variable lower_wall_force_x equal f_solvent[24]"
+                yield "variable upper_wall_force_x equal f_solvent[27]"
             yield from lammps.rotational_temperature(system)
         known = soft_particles.expressions(system)
         for output in system.outputs:

@@ -19,6 +19,7 @@ from lammps_inputs.quantities import si
 from lammps_inputs.scene import NonNegative, Positive, Scene
 from lammps_inputs.system import (
     FLUID_PROFILE,
+    SHEARED_AVERAGES,
     SPINNING_TRAJECTORY,
     SUSPENSION_AVERAGES,
     TRAJECTORY,
@@ -297,6 +298,7 @@ class Claylike(Scene):
         between = self.between
         turned = self.coupling == "reflection"  # by the fluid: coupling II gives no torque
         trajectory = SPINNING_TRAJECTORY if turned else TRAJECTORY
+        averages = SHEARED_AVERAGES if self.shear_rate else SUSPENSION_AVERAGES
         return System(
             box=Box((float(self.cells),) * 3, tuple(axis not in closed for axis in range(3))),
             clock=Clock.of_times(
@@ -321,7 +323,7 @@ class Claylike(Scene):
                 coupling=self.coupling,
                 drift_interval=0 if walls or self.hydrodynamics == "bath" else DRIFT_INTERVAL,
             ),
-            outputs=(trajectory, FLUID_PROFILE, SUSPENSION_AVERAGES),
+            outputs=(trajectory, FLUID_PROFILE, averages),
             measures=(
                 "fluid_temperature",
                 "colloid_temperature",
@@ -330,6 +332,7 @@ class Claylike(Scene):
                 "suspension_diffusion",
                 *(("rotational_diffusion",) if turned else ()),
                 "velocity_distribution",
+                "fluid_velocity_distribution",
                 *(("clusters",) if self.colloids > 1 else ()),
                 *(("radial_distribution",) if self.colloids > 1 and not walls else ()),
                 *(("shear_flow",) if self.shear_rate else ()),

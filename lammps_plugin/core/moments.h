@@ -17,34 +17,30 @@ template <int D> struct Moments {
 // Of all processes; 0 where all velocities are the same.
 template <int D> Moments<D> moments(const Fluid<D> &fluid, Processes &processes)
 {
-  std::array<double, D + 1> sums{};    // of the velocities, and the number of particles
-  for (int a = 0; a < D; ++a)
-    for (double v : fluid.v[a]) sums[a] += v;
-  sums[D] = fluid.size();
-  processes.sum(sums.data(), D + 1);
-
-  std::array<double, 3 * D> powers{};
-  for (int a = 0; a < D && sums[D] > 0; ++a) {
-    const double mean = sums[a] / sums[D];
-    double second = 0, third = 0, fourth = 0;
-    for (double v : fluid.v[a]) {
-      const double deviation = v - mean, square = deviation * deviation;
-      second += square;
-      third += square * deviation;
-      fourth += square * square;
+  std::array<double, 4 * D + 1> sums{};    // of the powers 1 to 4 of each component; particles
+  for (int i = 0; i < fluid.size(); ++i)
+    for (int a = 0; a < D; ++a) {
+      const double v = fluid.v[a][i], square = v * v;
+      sums[4 * a] += v;
+      sums[4 * a + 1] += square;
+      sums[4 * a + 2] += square * v;
+      sums[4 * a + 3] += square * square;
     }
-    powers[3 * a] = second;
-    powers[3 * a + 1] = third;
-    powers[3 * a + 2] = fourth;
-  }
-  processes.sum(powers.data(), 3 * D);
+  sums[4 * D] = fluid.size();
+  processes.sum(sums.data(), 4 * D + 1);
 
   Moments<D> moments;
-  for (int a = 0; a < D; ++a) {
-    const double variance = powers[3 * a] / sums[D];
+  for (int a = 0; a < D && sums[4 * D] > 0; ++a) {
+    double mean_power[4];
+    for (int p = 0; p < 4; ++p) mean_power[p] = sums[4 * a + p] / sums[4 * D];
+    const auto [mean, second, third, fourth] = mean_power;
+    const double variance = second - mean * mean;
     if (!(variance > 0)) continue;
-    moments.skewness[a] = powers[3 * a + 1] / sums[D] / std::pow(variance, 1.5);
-    moments.excess_kurtosis[a] = powers[3 * a + 2] / sums[D] / (variance * variance) - 3;
+    const double cubed = third - 3 * mean * second + 2 * mean * mean * mean;
+    const double squared =
+        fourth - 4 * mean * third + 6 * mean * mean * second - 3 * mean * mean * mean * mean;
+    moments.skewness[a] = cubed / std::pow(variance, 1.5);
+    moments.excess_kurtosis[a] = squared / (variance * variance) - 3;
   }
   return moments;
 }

@@ -86,11 +86,21 @@ class SuspensionEngine(ReferenceEngine):
         """What tables average, by column."""
         fluid, mean = self._fluid_velocities.mean(axis=1), self.mean_velocity()
         rotation = (self._system.inertias * self._spins**2).mean()
+        moved = self._fluid_velocities - fluid[:, None]
+        second, third, fourth = ((moved**power).mean(axis=1) for power in (2, 3, 4))
+        skewness, kurtosis = third / second**1.5, fourth / second**2 - 3
+        taken, interval = self._suspension.boundaries.taken, self._solvent.collision_time
+        nothing = np.zeros(3)
+        lower, upper = (taken.get((2, side), nothing) / interval for side in (False, True))
         return super().averages() | {
             "mean_velocity_z": float(mean[2]),
             "fluid_velocity_x": float(fluid[0]),
             "fluid_velocity_z": float(fluid[2]),
             "rotational_temperature": float(rotation),
+            **{f"fluid_skewness_{axis}": float(skewness[k]) for k, axis in enumerate("xyz")},
+            **{f"fluid_kurtosis_{axis}": float(kurtosis[k]) for k, axis in enumerate("xyz")},
+            "lower_wall_force_x": float(lower[0]),
+            "upper_wall_force_x": float(upper[0]),
         }
 
     def _parts(self) -> dict[str, Any]:
