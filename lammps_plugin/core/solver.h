@@ -342,52 +342,57 @@ template <int D> class Solver {
   }
 
   // Reflect what was held, and bring it into the sums; what has come to the cells of other processes
-  // goes there, and may be reflected there.
+  // goes there, and may be reflected there. A round has the next contact of every particle.
   void reflect()
   {
     auto &coupling = *method_.coupling;
-    std::vector<Flight<D>> leaving;
-    for (int i : strays_) leaving.push_back({fluid_.particle(i), method_.interval, 0});
-    auto arrived = std::move(leaving);
-    bring_home<D>(arrived, grid_, processes_);
-    for (auto &flight : arrived) coupling.announce(flight, locate(flight));
-    coupling.decide(processes_);
+    std::vector<std::pair<int, Flight<D>>> flying;    // with their index
+    std::vector<Flight<D>> visiting, leaving;
+    for (int i : held_) flying.push_back({i, {fluid_.particle(i), method_.interval, 0}});
+    for (int i : strays_) visiting.push_back({fluid_.particle(i), method_.interval, 0});
+    bring_home<D>(visiting, grid_, processes_);
+    for (auto &flight : visiting) coupling.announce(flight, locate(flight));
 
-    leaving.clear();
-    for (int i : held_) {
-      Flight<D> flight{fluid_.particle(i), method_.interval, 0};
-      coupling.reflect_next(flight);
-      const int cell = fluid_.cell[i] = bounce(flight);
-      for (int a = 0; a < D; ++a) {
-        fluid_.x[a][i] = flight.x[a];
-        fluid_.v[a][i] = flight.v[a];
+    while (processes_.any(!flying.empty() || !visiting.empty())) {
+      coupling.decide(processes_);
+      std::size_t left = 0;
+      for (auto &[i, flight] : flying) {
+        const bool reflected = coupling.reflect_next(flight);
+        const int cell = locate(flight);
+        if (cell < 0) {
+          strays_.push_back(i);
+          leaving.push_back(flight);
+        } else if (reflected) {
+          flying[left++] = {i, flight};
+        } else {
+          land(flight, i, cell);
+        }
       }
-      if (cell < 0) {
-        strays_.push_back(i);
-        leaving.push_back(flight);
-      } else {
-        add_to(sums_.of[cell], i);
+      flying.resize(left);
+      for (auto &flight : visiting) {
+        const bool reflected = coupling.reflect_next(flight);
+        locate(flight);
+        (reflected ? leaving : landed_).push_back(flight);
       }
-    }
-    for (auto &flight : arrived) coupling.reflect_next(flight);
-    for (;;) {
-      for (auto &flight : arrived)
-        (bounce(flight) < 0 ? leaving : landed_).push_back(flight);
-      if (!processes_.any(!leaving.empty())) break;
-      arrived = std::move(leaving);
+      visiting = std::move(leaving);
       leaving.clear();
-      bring_home<D>(arrived, grid_, processes_);
+      bring_home<D>(visiting, grid_, processes_);
+      for (auto &[i, flight] : flying) coupling.announce(flight, locate(flight));
+      for (auto &flight : visiting) coupling.announce(flight, locate(flight));
     }
     travelling_.assign(landed_.begin(), landed_.end());
     landed_.clear();
   }
 
-  // Reflect a particle until it meets no colloid; its cell, or -1 for another process's.
-  int bounce(Flight<D> &flight)
+  // At the end of its way, in a cell of this process.
+  void land(const Flight<D> &flight, int i, int cell)
   {
-    int cell = locate(flight);
-    while (cell >= 0 && method_.coupling->reflect(flight, cell)) cell = locate(flight);
-    return cell;
+    for (int a = 0; a < D; ++a) {
+      fluid_.x[a][i] = flight.x[a];
+      fluid_.v[a][i] = flight.v[a];
+    }
+    fluid_.cell[i] = cell;
+    add_to(sums_.of[cell], i);
   }
 
   int locate(Flight<D> &flight) const

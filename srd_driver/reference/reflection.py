@@ -149,12 +149,14 @@ def thermal_velocities(
     return np.asarray(along * normal + radius * across)
 
 
-def surfaces(spheres: Spheres, contacts: Contacts, leaving: Array) -> tuple[Array, Array]:
+def surfaces(
+    spheres: Spheres, contacts: Contacts, leaving: Array, now: tuple[Array, Array] | None = None
+) -> tuple[Array, Array]:
     """Velocity (d, N_c) and spin of the surface of each colloid.
 
-    With the first contact of every particle, at r and with an impulse
-    m_f (v - leaving - V_s - omega_s x r), the colloid ends the interval with V' and omega'. The
-    surface has V_s = V + share (V' - V) and omega_s = (omega + omega') / 2.
+    With a contact of every particle, at r and with an impulse m_f (v - leaving - V_s - omega_s x r),
+    the colloid comes to V' and omega'. The surface has V_s = V + share (V' - V) and
+    omega_s = (omega + omega') / 2.
 
     A colloid takes several contacts in an interval. If V_s was V, each would ignore what the others
     do, and the colloid's temperature would come out too high by half the fraction of its velocity
@@ -163,11 +165,17 @@ def surfaces(spheres: Spheres, contacts: Contacts, leaving: Array) -> tuple[Arra
     friction of a sphere, 4/3 + pi/6 in units of which what leaves with V_s makes 1 (a disk: 3/2 +
     pi/4; Epstein, Phys. Rev. 23, 710, 1924). What comes in does not know of the spin, so for that
     the share is 1/2.
+
+    Between colloids that nearly touch, particles go to and fro. Each round of contacts changes the
+    velocities as the first does, from what the rounds before left, `now`. What comes knows V alone,
+    so the V of the round is further on by 2 share - 1 of what they have changed.
     """
     dimensions, colloids = spheres.positions.shape
     spins = len(spheres.spins)
     share = SHARES[dimensions]
     velocity, spin = np.empty_like(spheres.velocities), np.empty_like(spheres.spins)
+    start, spinning = now or (spheres.velocities, spheres.spins)
+    start = start + (2 * share - 1) * (start - spheres.velocities)
     for c in range(colloids):
         mine = contacts.colloids == c
         arms, given = contacts.arms[:, mine], (contacts.velocities - leaving)[:, mine]
@@ -181,7 +189,7 @@ def surfaces(spheres: Spheres, contacts: Contacts, leaving: Array) -> tuple[Arra
             )
             matrix[:dimensions, column] += of_surface.sum(axis=1)
             matrix[dimensions:, column] += torque(arms, of_surface).sum(axis=1)
-        right = inertia * np.concatenate([spheres.velocities[:, c], spheres.spins[:, c]])
+        right = inertia * np.concatenate([start[:, c], spinning[:, c]])
         right += np.concatenate([given.sum(axis=1), torque(arms, given).sum(axis=1)])
         motion = np.linalg.solve(matrix, right)
         velocity[:, c], spin[:, c] = motion[:dimensions], motion[dimensions:]
@@ -217,7 +225,6 @@ def reflect(
     particles = positions.shape[1]
     flown = np.full(particles, interval)
     momentum, angular = np.zeros_like(spheres.velocities), np.zeros_like(spheres.spins)
-    velocity, spin = spheres.velocities, spheres.spins
     for contact in range(MOST_CONTACTS):
         contacts = find_contacts(
             positions, velocities, flown, spheres, placement, interval, field, boundaries
@@ -225,8 +232,11 @@ def reflect(
         if not contacts.particles.size:
             break
         leaving = thermal_velocities(contacts, temperature, contact, random, particles)
-        if contact == 0:
-            velocity, spin = surfaces(spheres, contacts, leaving)
+        now = (
+            spheres.velocities + momentum / spheres.masses,
+            spheres.spins + angular / spheres.inertias,
+        )
+        velocity, spin = surfaces(spheres, contacts, leaving, now)
         on = contacts.colloids
         left = leaving + velocity[:, on] + cross(spin[:, on], contacts.arms)
         impulses = contacts.velocities - left
