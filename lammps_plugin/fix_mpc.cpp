@@ -256,7 +256,7 @@ template <int D> void FixMPC<D>::end_of_step()
   if (couples_every_step())
     colloids_.follow();
   else if (coupling())
-    colloids_.see_velocities();
+    colloids_.see_velocities(interval_);
   guarded([&] { solver_->end_interval(colloids_.seen()); });
   open_ = false;
   if (couples_every_step()) {

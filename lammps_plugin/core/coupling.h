@@ -25,6 +25,7 @@ template <int D> struct Colloid {
   Vector<D> x, v;
   Spin<D> spin;
   double mass, inertia;
+  Vector<D> mean{};    // velocity over the interval, where it is after the flight
 };
 
 // A force and a torque, or their impulses.

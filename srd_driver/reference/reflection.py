@@ -41,6 +41,7 @@ class Spheres:
         positions, velocities: (d, N_c).
         spins: (3, N_c) or (1, N_c).
         radii, masses, inertias: (N_c,).
+        mean_velocities: over the interval (d, N_c); default: the velocities.
     """
 
     positions: Array
@@ -49,6 +50,12 @@ class Spheres:
     radii: Array
     masses: Array
     inertias: Array
+    mean_velocities: Array | None = None
+
+    @property
+    def ways(self) -> Array:
+        """Velocities on a straight way through the interval (d, N_c)."""
+        return self.velocities if self.mean_velocities is None else self.mean_velocities
 
 
 @dataclass(frozen=True)
@@ -98,7 +105,7 @@ def find_contacts(
         if boundaries.periodic[axis]:
             separation[axis] -= size * np.rint(separation[axis] / size)
     inside = 1 - (separation**2).sum(axis=0) / spheres.radii**2
-    mean = (velocities - 0.5 * flown * field)[:, :, None] - spheres.velocities[:, None, :]
+    mean = (velocities - 0.5 * flown * field)[:, :, None] - spheres.ways[:, None, :]
     ago = inside
     if placement == "entry":
         approach, speed = (mean * separation).sum(axis=0), (mean**2).sum(axis=0)
@@ -154,28 +161,24 @@ def surfaces(
 ) -> tuple[Array, Array]:
     """Velocity (d, N_c) and spin of the surface of each colloid.
 
-    With a contact of every particle, at r and with an impulse m_f (v - leaving - V_s - omega_s x r),
-    the colloid comes to V' and omega'. The surface has V_s = V + share (V' - V) and
-    omega_s = (omega + omega') / 2.
-
-    A colloid takes several contacts in an interval. If V_s was V, each would ignore what the others
-    do, and the colloid's temperature would come out too high by half the fraction of its velocity
-    that it loses in an interval. What comes in was decided by V; so for the exchange as a whole to
-    see (V + V') / 2, what leaves must see more of V'. The share follows from the free-molecular
-    friction of a sphere, 4/3 + pi/6 in units of which what leaves with V_s makes 1 (a disk: 3/2 +
-    pi/4; Epstein, Phys. Rev. 23, 710, 1924). What comes in does not know of the spin, so for that
-    the share is 1/2.
+    A contact of every particle, at r and with an impulse m_f (v - leaving - V_s - omega_s x r),
+    brings the colloid from V and omega to V' and omega'. The exchange as a whole must see the means
+    of both, or the colloid's temperature would come out too high: by half the fraction of its
+    velocity that it loses in an interval if V_s was V. What comes sees the mean velocity W on the
+    way of the interval, which between colloids that hold each other is not V. What leaves makes up
+    for it: by the free-molecular friction of a sphere, 1 of what leaves and r = 1/3 + pi/6 of what
+    comes (a disk: 1/2 + pi/4; Epstein, Phys. Rev. 23, 710, 1924), V_s = (1 + r) (V + V') / 2 - r W.
+    What comes does not know of the spin: omega_s = (omega + omega') / 2.
 
     Between colloids that nearly touch, particles go to and fro. Each round of contacts changes the
-    velocities as the first does, from what the rounds before left, `now`. What comes knows V alone,
-    so the V of the round is further on by 2 share - 1 of what they have changed.
+    velocities as the first does, from what the rounds before left, `now`.
     """
     dimensions, colloids = spheres.positions.shape
     spins = len(spheres.spins)
     share = SHARES[dimensions]
     velocity, spin = np.empty_like(spheres.velocities), np.empty_like(spheres.spins)
     start, spinning = now or (spheres.velocities, spheres.spins)
-    start = start + (2 * share - 1) * (start - spheres.velocities)
+    start = start + (2 * share - 1) * (start - spheres.ways)
     for c in range(colloids):
         mine = contacts.colloids == c
         arms, given = contacts.arms[:, mine], (contacts.velocities - leaving)[:, mine]
@@ -244,7 +247,7 @@ def reflect(
             component += np.bincount(on, impulse, len(component))
         for component, impulse in zip(angular, torque(contacts.arms, impulses), strict=True):
             component += np.bincount(on, impulse, len(component))
-        start = spheres.positions[:, on] - contacts.left * spheres.velocities[:, on]
+        start = spheres.positions[:, on] - contacts.left * spheres.ways[:, on]
         start += contacts.arms
         for axis in boundaries.walled:
             np.clip(start[axis], 0.0, boundaries.box[axis], out=start[axis])

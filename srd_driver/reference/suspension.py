@@ -5,7 +5,7 @@ collision they either reflect the fluid (IV) or are particles of their cells (V)
 components first: fluid (d, N), spheres (d, N_c), spins as in `rotation`.
 """
 
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from typing import Literal
 
 import numpy as np
@@ -77,10 +77,12 @@ class Suspension:
         fluid = (self.fluid_positions, self.fluid_velocities)
         stream(*fluid, self.field, self.interval, self.boundaries)
         self.boundaries.wrap(self.fluid_positions)
+        start = self.spheres.positions.copy()
         self._move_spheres()
+        means = (self.spheres.positions - start) / self.interval
         random = CounterRandom(self.seed, self.collisions)
         if self.coupling in ("entry", "nearest"):
-            self._reflect(random)
+            self._reflect(random, means)
         self._collide(random)
         self.collisions += 1
         if self.drift_interval and self.collisions % self.drift_interval == 0:
@@ -126,8 +128,9 @@ class Suspension:
         spheres.velocities[:] += time * (self.acceleration + forces / spheres.masses)
         kick(spheres.spins, torques, spheres.inertias, time)
 
-    def _reflect(self, random: CounterRandom) -> None:
-        fluid, spheres = (self.fluid_positions, self.fluid_velocities), self.spheres
+    def _reflect(self, random: CounterRandom, means: Array) -> None:
+        fluid = (self.fluid_positions, self.fluid_velocities)
+        spheres = replace(self.spheres, mean_velocities=means)
         placement: Literal["entry", "nearest"] = "entry" if self.coupling == "entry" else "nearest"
         momentum, angular = reflect(
             *(*fluid, spheres, placement, self.interval, 1.0, self.field, self.boundaries),
