@@ -19,6 +19,7 @@ from lammps_inputs.system import (
     FLOW,
     FLUID,
     FLUID_AVERAGES,
+    SHEARED_AVERAGES,
     SUSPENSION_AVERAGES,
     Drive,
     Solvent,
@@ -51,7 +52,8 @@ class Mpc(LammpsEngine):
         yield from self.needs_solvent(system)
         yield from self.unknown_parts(system)
         yield from self.needs_walls_or_periodic(system)
-        known = SUSPENSION_AVERAGES if system.rotates else FLUID_AVERAGES
+        of_spheres = SHEARED_AVERAGES if system.walls_on(2) else SUSPENSION_AVERAGES
+        known = of_spheres if system.rotates else FLUID_AVERAGES
         known_columns = {*known.columns, *soft_particles.expressions(system)}
         yield from self.needs_known_tables(system, known_columns)
         yield from lammps.one_pair_style(system)
