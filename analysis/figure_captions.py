@@ -13,6 +13,8 @@ CAPTIONS = {
     "profile.png": "Velocity of the fluid across the slit, mean over time with error bars.",
     "radial_distribution.png": "Radial distribution function of the colloids.",
     "reacted_speeds.png": "Normal speeds of the particles that reacted, beside equilibrium.",
+    "rotational_diffusion.png": "Mean squared angle that colloids rotate by against the lag, and "
+    "the diffusion coefficient by where its sum ends.",
     "settling_speed.png": "Settling speed against time, running means in both frames.",
     "shear_flow.png": "Velocity of the colloids between the moving walls.",
     "shear_wave.png": "Amplitude of the shear wave against time, with the fitted decay.",

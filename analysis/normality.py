@@ -1,11 +1,13 @@
 """Whether velocities are Gaussian: skewness and kurtosis against those of independent samples."""
 
+import math
 from dataclasses import dataclass
 
 import numpy as np
 from scipy import stats
 
 from analysis.arrays import Array
+from analysis.estimate import Estimate
 
 FALSE_ALARMS = 0.01  # of runs whose velocities are Gaussian, all directions together
 LEAST = 100  # samples in each direction
@@ -55,3 +57,13 @@ def normality(velocities: Array, apart: int) -> Normality:
         float(np.sqrt(24 / samples)),
         bool(p_values.min() > FALSE_ALARMS / flat.shape[1]),
     )
+
+
+def normal_probability(skewness: Estimate, excess_kurtosis: Estimate) -> float:
+    """How probable a skewness and a kurtosis as large are of a Gaussian: chi^2 of both.
+
+    Raises:
+        ValueError: when one of them has no error.
+    """
+    deviates = skewness.deviation(0.0), excess_kurtosis.deviation(0.0)
+    return math.exp(-0.5 * (deviates[0] ** 2 + deviates[1] ** 2))

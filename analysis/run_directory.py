@@ -14,7 +14,7 @@ from numpy.typing import NDArray
 
 from analysis.arrays import Array
 from analysis.flow_grid import FlowField, flow_columns
-from analysis.particle_trajectory import ParticleTrajectory
+from analysis.particle_trajectory import SPINS, ParticleTrajectory
 from analysis.run_outputs import Bins, Particles, Profile, Steps, Table
 from run_files import RunDirectoryError
 from run_files.manifest import Box, Clock, Output, Solvent, Species, read_manifest
@@ -323,8 +323,10 @@ class RunDirectory:
         Raises:
             RunDirectoryError: when the trajectory is missing, malformed or has no complete frame.
         """
-        name = self._output(name, "trajectory").file
+        output = self._output(name, "trajectory")
+        name = output.file
         path = self._checked(name)
+        spins = [each for each in output.columns if each in SPINS]
         with warnings.catch_warnings():
             warnings.filterwarnings("ignore", message="Guessed all Masses")
             warnings.filterwarnings("ignore", message="Some of the additional columns")
@@ -332,7 +334,7 @@ class RunDirectory:
                 universe = MDAnalysis.Universe(
                     str(path),
                     dt=self.time_step,
-                    additional_columns=["ix", "iy", "iz"],
+                    additional_columns=["ix", "iy", "iz", *spins],
                 )
                 first = universe.trajectory[0]
             except (OSError, ValueError, IndexError, EOFError, KeyError):
@@ -379,16 +381,18 @@ class RunDirectory:
         frames = lines // (universe.atoms.n_atoms + 9)
         if frames == 0:
             raise RunDirectoryError(f"{self.path / name}: no complete frame yet")
-        walk = ParticleTrajectory(universe, self.box.dimensions)
+        spinning = set(SPINS) <= set(self._output(trajectory, "trajectory").columns)
+        walk = ParticleTrajectory(universe, self.box.dimensions, spinning)
         try:
             results = walk.run(stop=frames).results
-        except (ValueError, IndexError) as error:
+        except (ValueError, IndexError, KeyError) as error:
             raise RunDirectoryError(f"{self.path / name}: malformed frame: {error}") from None
-        if not (np.isfinite(results.positions).all() and np.isfinite(results.velocities).all()):
+        read = (results.positions, results.velocities, *([results.spins] if spinning else []))
+        if not all(np.isfinite(values).all() for values in read):
             raise RunDirectoryError(f"{self.path / name}: holds numbers that are not finite")
         steps = self._check_steps(name, results.steps, first=0)
         species = np.array(self._each_particle("name"))
-        return Particles(steps, results.positions, results.velocities, species)
+        return Particles(steps, results.positions, results.velocities, species, results.spins)
 
     def _read_table(
         self, name: str, mark: str, wanted: Sequence[str]

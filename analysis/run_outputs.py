@@ -87,9 +87,11 @@ class Particles:
         positions: unwrapped, from the lower corner of the box, (T, N, d) [a0].
         velocities: (T, N, d) [a0/t0].
         species: name of the species of each particle, (N,).
+        spins: angular velocities, (T, N, 3) [1/t0]; None where the run did not keep them.
     """
 
     steps: Steps
     positions: Array
     velocities: Array
     species: NDArray[np.str_]
+    spins: Array | None = None

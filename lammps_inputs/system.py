@@ -6,7 +6,7 @@ t0. A scene builds its `System` from them; an engine refuses the parts that it d
 
 import math
 from collections.abc import Iterator
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Any, Literal, Protocol, Self, runtime_checkable
 
 import numpy as np
@@ -455,6 +455,9 @@ TRAJECTORY = Output(
     "trajectory",
     ("id", "type", "x", "y", "z", "vx", "vy", "vz", "ix", "iy", "iz"),
 )
+SPINNING_TRAJECTORY = replace(
+    TRAJECTORY, columns=(*TRAJECTORY.columns, "omegax", "omegay", "omegaz")
+)
 FLUID_PROFILE = Output(
     "fluid_profile.dat", "profile", ("Coord1", "Ncount", "density/number", "vx", "temp")
 )
@@ -469,7 +472,13 @@ SUSPENSION_AVERAGES = Output(
         "fluid_velocity_x",
         "fluid_velocity_z",
         "rotational_temperature",
+        *(f"fluid_skewness_{axis}" for axis in "xyz"),
+        *(f"fluid_kurtosis_{axis}" for axis in "xyz"),
     ),
+)
+SHEARED_AVERAGES = replace(
+    SUSPENSION_AVERAGES,
+    columns=(*SUSPENSION_AVERAGES.columns, "lower_wall_force_x", "upper_wall_force_x"),
 )
 PARTICLE_AVERAGES = Output(
     "observables.dat", "table", ("temperature", "potential_energy", "mean_velocity_x")

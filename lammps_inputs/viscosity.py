@@ -138,6 +138,25 @@ def mobility_in_cells(solvent: Solvent, mass: float, dimensions: int) -> float:
     return solvent.collision_time / mass * (1 / (1 - share) - 0.5)
 
 
+def rotational_mobility(solvent: Solvent, radius: float) -> float:
+    """Angular velocity over torque of a lone sphere that reflects the fluid [t0/m_f a0^2].
+
+    With kBT = 1 its D_r too. Fluid at rest that leaves with the velocity of the surface takes the
+    torque xi_E omega, xi_E = (4/3) sqrt(2 pi) n R^4: all there is without hydrodynamics. With them
+    the fluid follows, as Debye has it, and slips (J. C. Maxwell, Phil. Trans. 170, 231, 1879): the
+    fluid that flows in brings half of the kinetic stress, so that the rest is xi_E times the slip.
+    The mobility is 1 / (8 pi eta R^3) + (1 - eta_kin / (2 eta)) / xi_E, to first order in mean free
+    path and cell over R.
+    """
+    speed = math.sqrt(2 * math.pi * solvent.temperature)
+    free_molecular = 4 / 3 * speed * solvent.density * radius**4
+    if solvent.hydrodynamics != "on":
+        return 1 / free_molecular
+    nu = solvent_viscosity(solvent, dimensions=3)
+    debye = 8 * math.pi * solvent.density * nu.total * radius**3
+    return 1 / debye + (1 - nu.kinetic / nu.total / 2) / free_molecular
+
+
 def _colliding(density: float) -> float:
     """(M - 1 + e^-M) / M, the mean of 1 - 1/n over the particles of Poisson cells."""
     if density < 1e-4:  # where the difference has no digits left

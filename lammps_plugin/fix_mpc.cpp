@@ -17,6 +17,12 @@
 using namespace LAMMPS_NS;
 using namespace FixConst;
 
+namespace {
+
+enum Entries { PARTICLES = 3, COLLISIONS, SKEWNESS, KURTOSIS = SKEWNESS + 3, WALLS = KURTOSIS + 3 };
+
+}    // namespace
+
 template <int D>
 FixMPC<D>::FixMPC(LAMMPS *lmp, int narg, char **arg) :
     Fix(lmp, narg, arg), given_(lmp, narg, arg), processes_(*comm, world),
@@ -34,7 +40,7 @@ FixMPC<D>::FixMPC(LAMMPS *lmp, int narg, char **arg) :
   time_integrate = !given_.colloid_bit;    // colloids have an integrator of their own
   scalar_flag = vector_flag = array_flag = 1;
   global_freq = given_.every;
-  size_vector = 5;
+  size_vector = WALLS + 18;
   size_array_rows = given_.bins;
   size_array_cols = 5;
   extscalar = extvector = extarray = 0;
@@ -252,7 +258,7 @@ template <int D> void FixMPC<D>::end_of_step()
   if (couples_every_step())
     colloids_.follow();
   else if (coupling())
-    colloids_.see_velocities();
+    colloids_.see_velocities(interval_);
   guarded([&] { solver_->end_interval(colloids_.seen()); });
   open_ = false;
   if (couples_every_step()) {
@@ -336,12 +342,39 @@ template <int D> double FixMPC<D>::compute_scalar()
   return mpc::temperature(layers(), D);
 }
 
-// Momentum along x, y, z, then particles, then collisions.
+// How velocities are distributed now.
+template <int D> const mpc::Moments<D> &FixMPC<D>::moments()
+{
+  if (moments_step_ != update->ntimestep) {
+    solver_->turn();
+    moments_ = mpc::moments<D>(solver_->fluid(), processes_);
+    moments_step_ = update->ntimestep;
+  }
+  return moments_;
+}
+
+template <int D> const mpc::FaceVectors<D> &FixMPC<D>::momentum_of_walls()
+{
+  if (walls_step_ != update->ntimestep) {
+    momentum_of_walls_ = solver_->momentum_of_walls();
+    walls_step_ = update->ntimestep;
+  }
+  return momentum_of_walls_;
+}
+
+// Momentum along x, y, z, then particles, then collisions; skewness and excess kurtosis along x, y,
+// z; the force on each wall, from xlo to zhi, along x, y, z.
 template <int D> double FixMPC<D>::compute_vector(int index)
 {
-  if (index == 3) return solver_->particles();
-  if (index == 4) return static_cast<double>(solver_->collisions());
-  return index < D ? solver_->momentum()[index] : 0.0;
+  if (index == PARTICLES) return solver_->particles();
+  if (index == COLLISIONS) return static_cast<double>(solver_->collisions());
+  const int component = index < PARTICLES ? index : (index - SKEWNESS) % 3;
+  const int face = (index - WALLS) / 3;
+  if (component >= D || face >= 2 * D) return 0.0;
+  if (index < PARTICLES) return solver_->momentum()[component];
+  if (index < KURTOSIS) return moments().skewness[component];
+  if (index < WALLS) return moments().excess_kurtosis[component];
+  return momentum_of_walls()[face][component] / interval_;
 }
 
 template <int D> double FixMPC<D>::compute_array(int row, int column)

@@ -5,6 +5,7 @@
 
 #include "fix.h"
 
+#include "core/moments.h"
 #include "core/profile.h"
 #include "core/solver.h"
 #include "mpc_arguments.h"
@@ -55,6 +56,8 @@ template <int D> class FixMPC : public Fix {
   void add_forces(bool moving);
   template <class Action> void guarded(const Action &);
   const std::vector<mpc::Layer> &layers();
+  const mpc::Moments<D> &moments();
+  const mpc::FaceVectors<D> &momentum_of_walls();
 
   const MpcArguments<D> given_;
   MpiProcesses processes_;
@@ -71,7 +74,9 @@ template <int D> class FixMPC : public Fix {
   bool begun_ = false;       // the dump has its first frame
 
   std::vector<mpc::Layer> layers_;
-  bigint layers_step_ = -1;
+  mpc::Moments<D> moments_;
+  mpc::FaceVectors<D> momentum_of_walls_{};
+  bigint layers_step_ = -1, moments_step_ = -1, walls_step_ = -1;    // that they are of
 };
 
 }    // namespace LAMMPS_NS

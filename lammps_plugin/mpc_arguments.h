@@ -29,7 +29,7 @@ template <int D> struct MpcArguments {
   bool shifted = true;
   std::string tstat = "none", hydro = "on";
   mpc::Vector<D> field{};
-  mpc::FaceVelocities<D> wall_velocities{};
+  mpc::FaceVectors<D> wall_velocities{};
   bool virtual_particles = true;
 
   // how the colloids are coupled, by atom type; one of three

@@ -97,6 +97,7 @@ template <int D> void MpcColloids<D>::see(double interval)
     bounds[1] = std::max(bounds[1], 1 / seen.mass);
   }
   forces_.assign(seen_.size(), {});
+  if (coupling_->after_flight()) remember_places();
   if (comm->nprocs > 1) MPI_Allreduce(MPI_IN_PLACE, bounds, 2, MPI_DOUBLE, MPI_MAX, world);
   speed_ = std::sqrt(bounds[0]) + SPEED_MARGIN * std::sqrt(temperature_ * bounds[1]);
 
@@ -117,7 +118,33 @@ template <int D> void MpcColloids<D>::see(double interval)
                  "colloids: use comm_modify cutoff {:.4g} or more", comm->cutghost[a], needed);
 }
 
-template <int D> void MpcColloids<D>::see_velocities()
+template <int D> void MpcColloids<D>::remember_places()
+{
+  struct Place {
+    double id;
+    Vector<D> x;
+  };
+  std::vector<Place> mine;
+  for (std::size_t s = 0; s < seen_.size(); ++s)
+    if (atoms_[s] < atom->nlocal) mine.push_back({seen_[s].id, seen_[s].x});
+  began_.clear();
+  for (const auto &place : processes_.everyones(mine)) began_[place.id] = place.x;
+}
+
+template <int D>
+Vector<D> MpcColloids<D>::mean_velocity(const Colloid<D> &colloid, double interval) const
+{
+  const auto &began = began_.at(colloid.id);
+  Vector<D> mean;
+  for (int a = 0; a < D; ++a) {
+    double way = colloid.x[a] - began[a];
+    if (domain->periodicity[a]) way -= domain->prd[a] * std::rint(way / domain->prd[a]);
+    mean[a] = way / interval;
+  }
+  return mean;
+}
+
+template <int D> void MpcColloids<D>::see_velocities(double interval)
 {
   seen_.clear();
   atoms_.clear();
@@ -144,6 +171,8 @@ template <int D> void MpcColloids<D>::see_velocities()
     std::copy_n(values + D, spins, image.spin.begin());
     atoms_.push_back(i);
   }
+  if (coupling_->after_flight())
+    for (auto &colloid : seen_) colloid.mean = mean_velocity(colloid, interval);
 }
 
 template <int D> void MpcColloids<D>::sum_images(std::vector<double> &values, int width)

@@ -8,6 +8,7 @@
 
 #include "pointers.h"
 
+#include <unordered_map>
 #include <vector>
 
 namespace LAMMPS_NS {
@@ -35,8 +36,9 @@ template <int D> class MpcColloids : protected Pointers {
   void see(double interval);
   const std::vector<mpc::Colloid<D>> &seen() const { return seen_; }
 
-  // The same with the velocities of ghosts, which LAMMPS does not keep.
-  void see_velocities();
+  // The same at the end of the interval, with the velocities of ghosts, which LAMMPS does not keep,
+  // and means over the interval.
+  void see_velocities(double interval);
 
   // None becomes faster before the next collision.
   double speed() const { return speed_; }
@@ -78,6 +80,8 @@ template <int D> class MpcColloids : protected Pointers {
   double mass_of(int atom) const;
   mpc::Colloid<D> colloid(int atom) const;    // the velocity of a ghost only with comm_modify vel yes
   void read();
+  void remember_places();
+  mpc::Vector<D> mean_velocity(const mpc::Colloid<D> &, double interval) const;
   int atom_at(double id, const mpc::Vector<D> &, double distance) const;
 
   class Fix *fix_;
@@ -88,6 +92,7 @@ template <int D> class MpcColloids : protected Pointers {
   std::vector<mpc::Colloid<D>> seen_;    // colloids and images, in the order of the last collision
   std::vector<int> atoms_;               // index of the atom of each; -1 when it left the ghosts
   std::vector<mpc::Push<D>> forces_;
+  std::unordered_map<double, mpc::Vector<D>> began_;    // where all were after the last collision
   double speed_ = 0;
   std::vector<double> carried_;    // of each atom
   int width_ = 0;

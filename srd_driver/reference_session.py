@@ -5,7 +5,7 @@ from pathlib import Path
 import numpy as np
 
 from lammps_inputs import Scene
-from lammps_inputs.system import FLUID_PROFILE, TRAJECTORY, Array
+from lammps_inputs.system import FLUID_PROFILE, SPINNING_TRAJECTORY, TRAJECTORY, Array
 from run_files.fluid_file import Fluid
 from run_files.progress import Progress
 from run_files.writing import replacing
@@ -107,12 +107,14 @@ class ReferenceSession:
 
     def _write_frame(self) -> None:
         engine = self._engine
+        spinning = SPINNING_TRAJECTORY in self._system.outputs
         if len(engine.colloid_positions):
             write_frame(
                 self._directory / TRAJECTORY.file,
                 self.step,
                 self._system,
                 (engine.colloid_positions, engine.colloid_velocities, engine.colloid_images),
+                getattr(engine, "colloid_spins", None) if spinning else None,
             )
 
     def _write_titles(self) -> None:

@@ -1,4 +1,4 @@
-"""How fast the colloids follow walls that move."""
+"""How fast the colloids follow walls that move, and how much force that takes."""
 
 import numpy as np
 from matplotlib.figure import Figure
@@ -11,13 +11,13 @@ from analysis.findings import Findings
 from analysis.measures.settling_speed import sampled_frames
 from analysis.run_directory import RunDirectory
 
-QUANTITIES = ("shear_flow.rate",)
+QUANTITIES = ("shear_flow.rate", "shear_flow.stress", "shear_flow.viscosity")
 
 LAYERS = 10
 
 
 def measure(run: RunDirectory) -> Findings:
-    """Slope of the velocity along x across z: of all colloids, and of those by layers."""
+    """Slope of the velocity along x over z, of all colloids and by layers; stress on walls."""
     used, particles = sampled_frames(run), run.particles()
     height = run.box.sizes[2]
     positions, velocities = particles.positions[used], particles.velocities[used]
@@ -39,10 +39,28 @@ def measure(run: RunDirectory) -> Findings:
     ]
     imposed = 2 * max(wall.velocity[0] for wall in run.manifest.system.walls) / height
     entry = {"rate": rate.as_json(), "imposed": imposed, "profile": [p.as_json() for p in profile]}
+    entry |= {name: each.as_json() for name, each in stress_and_viscosity(run, rate).items()}
     middle = height * (np.arange(LAYERS) + 0.5) / LAYERS
     return Findings(
         {"shear_flow": entry}, {"shear_flow.png": draw(middle, profile, imposed, height)}
     )
+
+
+def stress_and_viscosity(run: RunDirectory, rate: Estimate) -> dict[str, Estimate]:
+    """Stress that the fluid hands to the walls across z; viscosity, its ratio to the rate of shear.
+
+    Relative to that of the fluid alone by theory, too.
+    """
+    table = run.table()
+    used = run.sampled(table.steps)
+    drag = 0.5 * (table["lower_wall_force_x"] - table["upper_wall_force_x"])[used]
+    area = run.box.sizes[0] * run.box.sizes[1]
+    stress = correlated_mean.mean(drag / area, run.interval)
+    known = {"stress": stress, "viscosity": stress / rate}
+    if run.solvent.viscosity_theory:
+        of_fluid = run.solvent.density * run.solvent.viscosity_theory
+        known["relative_viscosity"] = known["viscosity"] / of_fluid
+    return known
 
 
 def draw(middle: Array, profile: list[Estimate], imposed: float, height: float) -> Figure:

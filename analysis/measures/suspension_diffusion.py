@@ -37,16 +37,25 @@ def measure(run: RunDirectory) -> Findings:
     return Findings({"diffusion": entry}, {"diffusion.png": draw(found)})
 
 
-def draw(found: SuspensionDiffusion) -> Figure:
-    """Mean squared displacement, and the sum of (35) by where it ends."""
+def draw(
+    found: SuspensionDiffusion,
+    squares: str = "displacement in a direction [$a_0^2$]",
+    unit: str = "a_0^2/t_0",
+) -> Figure:
+    """Mean squared displacement, and the sum of (35) by where it ends.
+
+    Args:
+        squares: what they are of.
+        unit: of the diffusion coefficient.
+    """
     figure = Figure(figsize=(9, 4), layout="constrained")
     left, right = figure.subplots(1, 2)
     left.plot(found.times, found.msd, "o-", markersize=3)
     left.set_xlabel("lag [$t_0$]")
-    left.set_ylabel("mean squared displacement in a direction [$a_0^2$]")
+    left.set_ylabel(f"mean squared {squares}")
     right.plot(found.times, found.integral, "o-", markersize=3, label="(35) up to the lag")
-    right.axhline(found.from_msd.value or 0.0, color="0.5", label="from the displacement")
+    right.axhline(found.from_msd.value or 0.0, color="0.5", label="from the squares")
     right.set_xlabel("lag [$t_0$]")
-    right.set_ylabel("diffusion coefficient [$a_0^2/t_0$]")
+    right.set_ylabel(f"diffusion coefficient [${unit}$]")
     right.legend()
     return figure

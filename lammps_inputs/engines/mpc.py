@@ -19,6 +19,7 @@ from lammps_inputs.system import (
     FLOW,
     FLUID,
     FLUID_AVERAGES,
+    SHEARED_AVERAGES,
     SUSPENSION_AVERAGES,
     Drive,
     Solvent,
@@ -51,7 +52,8 @@ class Mpc(LammpsEngine):
         yield from self.needs_solvent(system)
         yield from self.unknown_parts(system)
         yield from self.needs_walls_or_periodic(system)
-        known = SUSPENSION_AVERAGES if system.rotates else FLUID_AVERAGES
+        of_spheres = SHEARED_AVERAGES if system.walls_on(2) else SUSPENSION_AVERAGES
+        known = of_spheres if system.rotates else FLUID_AVERAGES
         known_columns = {*known.columns, *soft_particles.expressions(system)}
         yield from self.needs_known_tables(system, known_columns)
         yield from lammps.one_pair_style(system)
@@ -166,6 +168,12 @@ class Mpc(LammpsEngine):
             yield f"variable mean_velocity_z equal {momentum}/(f_solvent[4]+mass({group}))"
             yield "variable fluid_velocity_x equal f_solvent[1]/f_solvent[4]"
             yield "variable fluid_velocity_z equal f_solvent[3]/f_solvent[4]"
+            for number, axis in enumerate("xyz", start=6):
+                yield f"variable fluid_skewness_{axis} equal f_solvent[{number}]"
+                yield f"variable fluid_kurtosis_{axis} equal f_solvent[{number + 3}]"
+            if system.walls_on(2):
+                yield "variable lower_wall_force_x equal f_solvent[24]"
+                yield "variable upper_wall_force_x equal f_solvent[27]"
             yield from lammps.rotational_temperature(system)
         known = soft_particles.expressions(system)
         for output in system.outputs:

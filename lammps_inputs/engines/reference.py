@@ -9,7 +9,7 @@ from lammps_inputs.potentials.dlvo import Dlvo
 from lammps_inputs.potentials.harmonic_wall import HarmonicWall
 from lammps_inputs.potentials.integrated_wall import IntegratedWall
 from lammps_inputs.potentials.repulsive_mie import RepulsiveMie
-from lammps_inputs.system import FLUID_AVERAGES, SUSPENSION_AVERAGES, System, VelocityVerlet
+from lammps_inputs.system import FLUID_AVERAGES, SHEARED_AVERAGES, System, VelocityVerlet
 
 
 class Reference(Engine):
@@ -42,7 +42,7 @@ class Reference(Engine):
         solvent = system.solvent
         assert solvent is not None
         yield from self.needs_walls_or_periodic(system)
-        yield from self.needs_known_tables(system, SUSPENSION_AVERAGES.columns)
+        yield from self.needs_known_tables(system, SHEARED_AVERAGES.columns)
         if system.box.dimensions != 3 or len(system.species) != 1 or not system.rotates:
             yield (
                 f"coupling = {solvent.coupling!r}: engine {self.name} needs a single species of "

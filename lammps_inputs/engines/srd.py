@@ -180,6 +180,7 @@ class Srd(LammpsEngine):
             yield "variable mean_velocity_z equal vcm(all,z)"
             yield "variable fluid_velocity_x equal vcm(fluid,x)"
             yield "variable fluid_velocity_z equal vcm(fluid,z)"
+            yield from _moments()
             yield from lammps.rotational_temperature(system)
 
     def write(self, system: System, state: InitialState, title: str, directory: Path) -> None:
@@ -198,6 +199,18 @@ def _balance(drive: Drive) -> Iterator[str]:
             share = f"{-part!r}*v_{drive.variable}*dt*mass({drive.target})/count(fluid)"
             yield f"variable {name} atom v{axis}+{share}"
             yield f"fix {name} fluid set 1 0 group fluid v{axis} v_{name}"
+
+
+def _moments() -> Iterator[str]:
+    """Skewness and excess kurtosis of the fluid's velocities along each axis."""
+    for axis in "xyz":
+        for power in (2, 3, 4):
+            yield f"variable v{axis}{power} atom (v{axis}-vcm(fluid,{axis}))^{power}"
+        powers = " ".join(f"v_v{axis}{power}" for power in (2, 3, 4))
+        yield f"compute v{axis} fluid reduce ave {powers}"
+        second, third, fourth = (f"c_v{axis}[{number}]" for number in (1, 2, 3))
+        yield f"variable fluid_skewness_{axis} equal {third}/{second}^1.5"
+        yield f"variable fluid_kurtosis_{axis} equal {fourth}/{second}^2-3"
 
 
 def _fluid(system: System) -> Solvent:

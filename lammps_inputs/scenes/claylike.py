@@ -19,6 +19,8 @@ from lammps_inputs.quantities import si
 from lammps_inputs.scene import NonNegative, Positive, Scene
 from lammps_inputs.system import (
     FLUID_PROFILE,
+    SHEARED_AVERAGES,
+    SPINNING_TRAJECTORY,
     SUSPENSION_AVERAGES,
     TRAJECTORY,
     Box,
@@ -294,6 +296,9 @@ class Claylike(Scene):
             walls = (*slit(0, repulsion), *slit(1, repulsion))
         closed = {wall.axis for wall in walls}
         between = self.between
+        turned = self.coupling == "reflection"  # by the fluid: coupling II gives no torque
+        trajectory = SPINNING_TRAJECTORY if turned else TRAJECTORY
+        averages = SHEARED_AVERAGES if self.shear_rate else SUSPENSION_AVERAGES
         return System(
             box=Box((float(self.cells),) * 3, tuple(axis not in closed for axis in range(3))),
             clock=Clock.of_times(
@@ -318,14 +323,16 @@ class Claylike(Scene):
                 coupling=self.coupling,
                 drift_interval=0 if walls or self.hydrodynamics == "bath" else DRIFT_INTERVAL,
             ),
-            outputs=(TRAJECTORY, FLUID_PROFILE, SUSPENSION_AVERAGES),
+            outputs=(trajectory, FLUID_PROFILE, averages),
             measures=(
                 "fluid_temperature",
                 "colloid_temperature",
                 "rotational_temperature",
                 "sedimentation",
                 "suspension_diffusion",
+                *(("rotational_diffusion",) if turned else ()),
                 "velocity_distribution",
+                "fluid_velocity_distribution",
                 *(("clusters",) if self.colloids > 1 else ()),
                 *(("radial_distribution",) if self.colloids > 1 and not walls else ()),
                 *(("shear_flow",) if self.shear_rate else ()),

@@ -25,6 +25,7 @@ template <int D> struct Colloid {
   Vector<D> x, v;
   Spin<D> spin;
   double mass, inertia;
+  Vector<D> mean{};    // velocity over the interval, where it is after the flight
 };
 
 // A force and a torque, or their impulses.
@@ -70,16 +71,15 @@ template <int D> class Coupling {
 
   // After the flight, which then is at the interval's end. Colloids as they are now, and the grid of
   // the next collision; then which of the particles begin ... end - 1 have met a colloid, and
-  // whether one that has come from another process has: each is remembered; then, when all processes
-  // know of all of them, what the first contact did to each, in this order; and again what the next
-  // one did, until none touches a colloid any more.
+  // whether one that has come from another process has: each is remembered. Then, in rounds: when
+  // all processes know of all contacts, what each did to its particle, in this order; and whether
+  // that meets a colloid again. False for a particle that met none.
   virtual bool after_flight() const { return false; }
   virtual void meet(const Grid<D> &, const Colloids &, const CounterRandom &) {}
   virtual void watch(const Fluid<D> &, int /*begin*/, int /*end*/, std::vector<int> & /*met*/) {}
   virtual void announce(const Flight<D> &, int /*cell*/) {}
   virtual void decide(Processes &) {}
   virtual bool reflect_next(Flight<D> &) { return false; }
-  virtual bool reflect(Flight<D> &, int /*cell*/) { return false; }
 
   // In the collision, in this process's cells: join their sums, then do as their turns say.
   virtual bool in_collision() const { return false; }

@@ -8,20 +8,18 @@
 
 namespace mpc {
 
-template <int D> using FaceVelocities = std::array<Vector<D>, 2 * D>;    // by number of the face
-
 template <int D> class NoSlipWalls : public Walls<D> {
  public:
   // Cells are filled up to the density; 0: they are left as they are.
   NoSlipWalls(const Grid<D> &grid, double density, double temperature,
-              const FaceVelocities<D> &velocities = {})
+              const FaceVectors<D> &velocities = {})
     : Walls<D>(grid), density_(density), temperature_(temperature), velocities_(velocities)
   {
     for (const auto &velocity : velocities_)
       gain_ = std::max(gain_, 2 * std::sqrt(square<D>(velocity)));
   }
 
-  void contact(Face face, Vector<D> &velocity) const override
+  void reflect(Face face, Vector<D> &velocity) const override
   {
     const auto &of_wall = velocities_[face.number()];
     for (int a = 0; a < D; ++a) velocity[a] = 2 * of_wall[a] - velocity[a];
@@ -53,7 +51,7 @@ template <int D> class NoSlipWalls : public Walls<D> {
 
  private:
   double density_, temperature_, gain_ = 0;
-  FaceVelocities<D> velocities_;
+  FaceVectors<D> velocities_;
 };
 
 }    // namespace mpc

@@ -9,12 +9,16 @@
 //
 // The frame of the surface. A colloid takes several contacts in an interval. If all left with the
 // velocity that it had before them, its temperature would come out high by half the fraction of its
-// velocity that it loses in an interval, 5 to 10 % in practice. What the incoming particles bring is
-// decided by its path up to now; so those that leave must see a later velocity, the one for which
-// the exchange as a whole sees the mean of before and after: V + share (V' - V), with V' found
-// together with the contacts. For a translation the share is (4/3 + pi/6) / 2 in 3D and
-// (3/2 + pi/4) / 2 in 2D, from the free-molecular friction by what comes and what leaves (Epstein,
-// Phys. Rev. 23, 710, 1924); for a rotation it is 1/2, as what comes does not know of it.
+// velocity that it loses in an interval, 5 to 10 % in practice. The exchange as a whole must see
+// (V + V') / 2, the mean of before and after. What comes sees the mean velocity W on the way of the
+// interval, which between colloids that hold each other is not V. So what leaves must make up for it:
+// by the free-molecular friction of a translation, 1 of what leaves and r of what comes, r = 1/3 +
+// pi/6 in 3D and 1/2 + pi/4 in 2D (Epstein, Phys. Rev. 23, 710, 1924), it sees
+// (1 + r) (V + V') / 2 - r W, with V' found together with the contacts. For a rotation it is the mean,
+// as what comes does not know of it.
+//
+// Between colloids that nearly touch, particles go to and fro. So contacts come in rounds, the next of
+// every particle, and each round changes V to V' as the first does.
 
 #pragma once
 
@@ -62,9 +66,9 @@ template <int D> class ReflectionCoupling : public Coupling<D> {
     spheres_.clear();
     largest_ = fastest_ = 0;
     for (const auto &colloid : colloids) {
-      spheres_.push_back({colloid.x, colloid.v, radii_.at(colloid.type)});
+      spheres_.push_back({colloid.x, colloid.mean, radii_.at(colloid.type)});
       largest_ = std::max(largest_, spheres_.back().radius * (1 + 1e-9));
-      fastest_ = std::max(fastest_, square<D>(colloid.v));
+      fastest_ = std::max(fastest_, square<D>(colloid.mean));
     }
     fastest_ = std::sqrt(fastest_) + 0.5 * std::sqrt(square<D>(field_)) * interval_;
     for (int a = 0; a < D; ++a) per_length_[a] = grid.periodic[a] ? 1 / grid.box[a] : 0.0;
@@ -74,8 +78,10 @@ template <int D> class ReflectionCoupling : public Coupling<D> {
     cells_.finish();
     sums_.assign(WIDTH * colloids.size(), 0.0);
     impulses_.assign(colloids.size(), {});
+    now_.clear();
+    for (const auto &colloid : colloids) now_.push_back({colloid.v, colloid.spin});
+    surfaces_ = now_;
     announced_.clear();
-    next_ = 0;
   }
 
   void watch(const Fluid<D> &fluid, int begin, int end, std::vector<int> &met) override
@@ -106,33 +112,36 @@ template <int D> class ReflectionCoupling : public Coupling<D> {
     }
   }
 
-  void announce(const Flight<D> &flight, int cell) override { remember(flight, find(flight, cell)); }
+  void announce(const Flight<D> &flight, int cell) override
+  {
+    remember(flight, flight.contacts < MOST_CONTACTS ? find(flight, cell) : Contact{});
+  }
 
-  // The velocities of the surfaces.
+  // The velocities of the surfaces, and of the colloids after the round.
   void decide(Processes &processes) override
   {
+    decided_.swap(announced_);
+    announced_.clear();
+    next_ = 0;
     processes.sum_images(sums_, WIDTH);
-    surfaces_.clear();
     for (std::size_t c = 0; c < colloids_.size(); ++c) {
       const double *sum = &sums_[WIDTH * c];
-      surfaces_.push_back(*sum > 0 ? solve(colloids_[c], sum) : Surface{});
+      if (!(*sum > 0)) continue;
+      auto &now = now_[c];
+      auto from = now;
+      for (int a = 0; a < D; ++a) from.v[a] += (2 * SHARE - 1) * (now.v[a] - colloids_[c].mean[a]);
+      surfaces_[c] = solve(colloids_[c], from, sum);
+      for (int a = 0; a < D; ++a) now.v[a] += (surfaces_[c].v[a] - from.v[a]) / SHARE;
+      for (int s = 0; s < SPINS; ++s) now.spin[s] += 2 * (surfaces_[c].spin[s] - from.spin[s]);
     }
+    std::fill(sums_.begin(), sums_.end(), 0.0);
   }
 
   bool reflect_next(Flight<D> &flight) override
   {
-    const auto &announced = announced_[next_++];
-    if (announced.contact.colloid < 0) return false;
-    rebound(flight, announced.contact, announced.leaving);
-    return true;
-  }
-
-  bool reflect(Flight<D> &flight, int cell) override
-  {
-    if (flight.contacts == MOST_CONTACTS) return false;
-    const auto contact = find(flight, cell);
-    if (contact.colloid < 0) return false;
-    rebound(flight, contact, leaving(flight, contact));
+    const auto &decided = decided_[next_++];
+    if (decided.contact.colloid < 0) return false;
+    rebound(flight, decided.contact, decided.leaving);
     return true;
   }
 
@@ -143,7 +152,7 @@ template <int D> class ReflectionCoupling : public Coupling<D> {
   static constexpr double MOST_SPEED = 5;     // thermal speeds; of 1e5 two are faster
   static constexpr int SPINS = D == 2 ? 1 : 3;
   static constexpr int WIDTH = 1 + D + D * (D + 1) / 2 + D + SPINS;
-  static constexpr double SHARE = D == 2 ? (1.5 + M_PI / 4) / 2 : (4.0 / 3 + M_PI / 6) / 2;
+  static constexpr double SHARE = D == 2 ? (1.5 + M_PI / 4) / 2 : (4.0 / 3 + M_PI / 6) / 2;    // (1 + r) / 2
 
   struct Sphere {
     Vector<D> x, v;
@@ -324,8 +333,8 @@ template <int D> class ReflectionCoupling : public Coupling<D> {
   }
 
   // V and Omega of the surface from M (V' - V) = P - sum (V + Omega x r) and
-  // I (Omega' - Omega) = Q - sum r x (V + Omega x r), primed ones as they are after all contacts.
-  static Surface solve(const Colloid<D> &colloid, const double *sum)
+  // I (Omega' - Omega) = Q - sum r x (V + Omega x r), primed ones as they are after the contacts.
+  static Surface solve(const Colloid<D> &colloid, const Surface &from, const double *sum)
   {
     constexpr int N = D + SPINS;
     const double count = *sum++;
@@ -354,7 +363,7 @@ template <int D> class ReflectionCoupling : public Coupling<D> {
     for (int row = 0; row < N; ++row) {
       const double inertia = row < D ? colloid.mass / SHARE : 2 * colloid.inertia;
       matrix[row][row] += inertia;
-      right[row] = *sum++ + inertia * (row < D ? colloid.v[row] : colloid.spin[row - D]);
+      right[row] = *sum++ + inertia * (row < D ? from.v[row] : from.spin[row - D]);
     }
     for (int pivot = 0; pivot < N; ++pivot)    // symmetric and positive: no exchange of rows
       for (int row = pivot + 1; row < N; ++row) {
@@ -400,11 +409,11 @@ template <int D> class ReflectionCoupling : public Coupling<D> {
   ColloidCells<D> cells_;
   std::vector<int> listed_;
   std::vector<double> within_;
-  std::vector<Announced> announced_;
-  std::size_t next_ = 0;    // of them
+  std::vector<Announced> announced_, decided_;
+  std::size_t next_ = 0;    // of those decided
   CounterRandom random_{0, 0};
   std::vector<double> sums_;
-  std::vector<Surface> surfaces_;
+  std::vector<Surface> now_, surfaces_;    // colloids after the rounds so far; what particles see
 };
 
 }    // namespace mpc

@@ -119,6 +119,15 @@ template <int D> class Solver {
     return total;
   }
 
+  // That the walls have taken up in the last interval and its collision, of all processes.
+  FaceVectors<D> momentum_of_walls()
+  {
+    FaceVectors<D> total{};
+    if (method_.walls) total = method_.walls->taken();
+    processes_.sum(total[0].data(), 2 * D * D);
+    return total;
+  }
+
   // Let the coupling know the forces between intervals; nothing moves.
   void find_near(const std::vector<Colloid<D>> &colloids, double colloid_speed)
   {
@@ -131,6 +140,7 @@ template <int D> class Solver {
   void begin_interval(const std::vector<Colloid<D>> &colloids, double colloid_speed)
   {
     if (collisions_ % SORT_INTERVAL == 0) tiles_.sort(fluid_, grid_);
+    if (method_.walls) method_.walls->forget();
     auto *coupling = method_.coupling.get();
     if (coupling) coupling->begin(grid_, colloids, colloid_speed);
     draw_shift(collisions_);
@@ -351,52 +361,57 @@ template <int D> class Solver {
   }
 
   // Reflect what was held, and bring it into the sums; what has come to the cells of other processes
-  // goes there, and may be reflected there.
+  // goes there, and may be reflected there. A round has the next contact of every particle.
   void reflect()
   {
     auto &coupling = *method_.coupling;
-    std::vector<Flight<D>> leaving;
-    for (int i : strays_) leaving.push_back({fluid_.particle(i), method_.interval, 0});
-    auto arrived = std::move(leaving);
-    bring_home<D>(arrived, grid_, processes_);
-    for (auto &flight : arrived) coupling.announce(flight, locate(flight));
-    coupling.decide(processes_);
+    std::vector<std::pair<int, Flight<D>>> flying;    // with their index
+    std::vector<Flight<D>> visiting, leaving;
+    for (int i : held_) flying.push_back({i, {fluid_.particle(i), method_.interval, 0}});
+    for (int i : strays_) visiting.push_back({fluid_.particle(i), method_.interval, 0});
+    bring_home<D>(visiting, grid_, processes_);
+    for (auto &flight : visiting) coupling.announce(flight, locate(flight));
 
-    leaving.clear();
-    for (int i : held_) {
-      Flight<D> flight{fluid_.particle(i), method_.interval, 0};
-      coupling.reflect_next(flight);
-      const int cell = fluid_.cell[i] = bounce(flight);
-      for (int a = 0; a < D; ++a) {
-        fluid_.x[a][i] = flight.x[a];
-        fluid_.v[a][i] = flight.v[a];
+    while (processes_.any(!flying.empty() || !visiting.empty())) {
+      coupling.decide(processes_);
+      std::size_t left = 0;
+      for (auto &[i, flight] : flying) {
+        const bool reflected = coupling.reflect_next(flight);
+        const int cell = locate(flight);
+        if (cell < 0) {
+          strays_.push_back(i);
+          leaving.push_back(flight);
+        } else if (reflected) {
+          flying[left++] = {i, flight};
+        } else {
+          land(flight, i, cell);
+        }
       }
-      if (cell < 0) {
-        strays_.push_back(i);
-        leaving.push_back(flight);
-      } else {
-        add_to(sums_.of[cell], i);
+      flying.resize(left);
+      for (auto &flight : visiting) {
+        const bool reflected = coupling.reflect_next(flight);
+        locate(flight);
+        (reflected ? leaving : landed_).push_back(flight);
       }
-    }
-    for (auto &flight : arrived) coupling.reflect_next(flight);
-    for (;;) {
-      for (auto &flight : arrived)
-        (bounce(flight) < 0 ? leaving : landed_).push_back(flight);
-      if (!processes_.any(!leaving.empty())) break;
-      arrived = std::move(leaving);
+      visiting = std::move(leaving);
       leaving.clear();
-      bring_home<D>(arrived, grid_, processes_);
+      bring_home<D>(visiting, grid_, processes_);
+      for (auto &[i, flight] : flying) coupling.announce(flight, locate(flight));
+      for (auto &flight : visiting) coupling.announce(flight, locate(flight));
     }
     travelling_.assign(landed_.begin(), landed_.end());
     landed_.clear();
   }
 
-  // Reflect a particle until it meets no colloid; its cell, or -1 for another process's.
-  int bounce(Flight<D> &flight)
+  // At the end of its way, in a cell of this process.
+  void land(const Flight<D> &flight, int i, int cell)
   {
-    int cell = locate(flight);
-    while (cell >= 0 && method_.coupling->reflect(flight, cell)) cell = locate(flight);
-    return cell;
+    for (int a = 0; a < D; ++a) {
+      fluid_.x[a][i] = flight.x[a];
+      fluid_.v[a][i] = flight.v[a];
+    }
+    fluid_.cell[i] = cell;
+    add_to(sums_.of[cell], i);
   }
 
   int locate(Flight<D> &flight) const
@@ -462,6 +477,7 @@ template <int D> class Solver {
           thermostat->redraw(fluid_, random);
         }
       }
+      for (const auto &[cell, cut] : cut_) method_.walls->take(cut, lost(cell));
       if (joining()) coupling->turn(turns_, processes_);
     }
     if (solvent) {
@@ -485,13 +501,24 @@ template <int D> class Solver {
       method_.rotation.draw(random, grid_.number(rows), turns_[cell]);
       fix_point<D>(turns_[cell], sums_.mean(cell));
     });
+    cut_.clear();
     if (!method_.walls) return;
     const auto &walls = *method_.walls;
     grid_.each_cell([&](int cell, const std::array<int, D> &rows) {
-      if (const auto cut = walls.cutting(grid_, rows); cut.count > 0)
-        fix_point<D>(turns_[cell],
-                     walls.mean_of_cut(cut, sums_, cell, random, grid_.number(rows)));
+      const auto cut = walls.cutting(grid_, rows);
+      if (cut.count == 0) return;
+      fix_point<D>(turns_[cell], walls.mean_of_cut(cut, sums_, cell, random, grid_.number(rows)));
+      cut_.push_back({cell, cut});
     });
+  }
+
+  // Momentum that what is in a cell loses in its turn.
+  Vector<D> lost(int cell) const
+  {
+    const auto mean = sums_.mean(cell), after = turns_[cell].apply(mean);
+    Vector<D> lost;
+    for (int a = 0; a < D; ++a) lost[a] = sums_.mass(cell) * (mean[a] - after[a]);
+    return lost;
   }
 
   Grid<D> grid_;
@@ -502,6 +529,7 @@ template <int D> class Solver {
   std::uint64_t collisions_ = 0;
   CellSums<D> sums_;
   Array<Turn<D>> turns_;       // of the last collision
+  std::vector<std::pair<int, Cut<D>>> cut_;    // cells that walls cut
   bool turning_ = false;             // whether they are still to be applied
   bool redrawing_ = false;           // and whether the random solvent is to redraw after them
   std::vector<int> strays_;          // indices of particles in no cell of this process

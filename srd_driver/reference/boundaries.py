@@ -26,12 +26,18 @@ class Boundaries:
         periodic: for each axis; the others have walls.
         velocities: of moving walls, by (axis, upper) (d,) [a0/t0]; the others are at rest.
         density: particles that a cut cell is filled up to; 0: cells are left as they are.
+        taken: momentum that walls took up since it was last cleared, by (axis, upper) (d,).
     """
 
     box: tuple[float, ...]
     periodic: tuple[bool, ...]
     velocities: dict[tuple[int, bool], tuple[float, ...]] = field(default_factory=dict)
     density: float = 0.0
+    taken: dict[tuple[int, bool], Array] = field(default_factory=dict, repr=False, compare=False)
+
+    def take(self, axis: int, upper: bool, momentum: Array) -> None:
+        """Add to what a wall took up (d,)."""
+        self.taken[axis, upper] = self.taken.get((axis, upper), 0.0) + momentum
 
     @property
     def walled(self) -> list[int]:
@@ -113,7 +119,9 @@ def stream(
             for upper in (0, 1):
                 met = face == 2 * axis + upper
                 r[axis, met] = boundaries.box[axis] if upper else 0.0
-                v[:, met] = 2 * boundaries.velocity(axis, bool(upper))[:, None] - v[:, met]
+                arrived = v[:, met]
+                v[:, met] = 2 * boundaries.velocity(axis, bool(upper))[:, None] - arrived
+                boundaries.take(axis, bool(upper), (arrived - v[:, met]).sum(axis=1))
         positions[:, flying], velocities[:, flying] = r, v
         left[flying] = rest - first
     raise SimulationFault(
@@ -122,10 +130,29 @@ def stream(
     )
 
 
+def cut_cells(boundaries: Boundaries, cells: Cells, shift: Array) -> NDArray[np.bool_]:
+    """Whether each cell of a shifted grid reaches beyond each face (d, 2, cells)."""
+    number = np.arange(cells.count)
+    cut = np.zeros((len(cells.shape), 2, cells.count), dtype=bool)
+    for axis, rows in enumerate(cells.shape):
+        start = number % rows - shift[axis]
+        number = number // rows
+        if not boundaries.periodic[axis]:
+            cut[axis] = start < 0, start + 1 > boundaries.box[axis]
+    return cut
+
+
+def take_from_cells(boundaries: Boundaries, cut: NDArray[np.bool_], lost: Array) -> None:
+    """What cells lost (d, cells) goes to the walls that cut them, in equal parts."""
+    share = lost / np.maximum(cut.sum(axis=(0, 1)), 1)
+    for axis in boundaries.walled:
+        for upper in (False, True):
+            boundaries.take(axis, upper, share[:, cut[axis, int(upper)]].sum(axis=1))
+
+
 def virtual_particles(
     boundaries: Boundaries,
-    cells: Cells,
-    shift: Array,
+    cut: NDArray[np.bool_],
     fluid: Array,
     temperature: float,
     random: CounterRandom,
@@ -138,23 +165,17 @@ def virtual_particles(
 
     Args:
         boundaries: the walls.
-        cells: the sorted particles.
-        shift: of the grid (d,).
+        cut: the cells that they cut, as `cut_cells` has it.
         fluid: number of fluid particles in each cell (cells,).
         temperature: kBT.
         random: of this collision.
     """
-    dimensions, count = len(boundaries.box), cells.count
-    number = np.arange(count)
-    of_walls, walls = np.zeros((dimensions, count)), np.zeros(count)
-    for axis, rows in enumerate(cells.shape):
-        start = number % rows - shift[axis]
-        number = number // rows
-        if boundaries.periodic[axis]:
-            continue
-        for upper, cut in ((False, start < 0), (True, start + 1 > boundaries.box[axis])):
-            of_walls[:, cut] += boundaries.velocity(axis, upper)[:, None]
-            walls[cut] += 1
+    dimensions, count = len(boundaries.box), len(fluid)
+    of_walls, walls = np.zeros((dimensions, count)), cut.sum(axis=(0, 1))
+    for axis in boundaries.walled:
+        for upper in (False, True):
+            velocity = boundaries.velocity(axis, upper)[:, None]
+            of_walls[:, cut[axis, int(upper)]] += velocity
     missing = np.where(walls > 0, np.maximum(boundaries.density - fluid, 0.0), 0.0)
     mean = of_walls / np.maximum(walls, 1)
     noise = random.normal(Stream.WALL, count)[:dimensions]

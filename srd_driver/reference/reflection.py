@@ -41,6 +41,7 @@ class Spheres:
         positions, velocities: (d, N_c).
         spins: (3, N_c) or (1, N_c).
         radii, masses, inertias: (N_c,).
+        mean_velocities: over the interval (d, N_c); default: the velocities.
     """
 
     positions: Array
@@ -49,6 +50,12 @@ class Spheres:
     radii: Array
     masses: Array
     inertias: Array
+    mean_velocities: Array | None = None
+
+    @property
+    def ways(self) -> Array:
+        """Velocities on a straight way through the interval (d, N_c)."""
+        return self.velocities if self.mean_velocities is None else self.mean_velocities
 
 
 @dataclass(frozen=True)
@@ -98,7 +105,7 @@ def find_contacts(
         if boundaries.periodic[axis]:
             separation[axis] -= size * np.rint(separation[axis] / size)
     inside = 1 - (separation**2).sum(axis=0) / spheres.radii**2
-    mean = (velocities - 0.5 * flown * field)[:, :, None] - spheres.velocities[:, None, :]
+    mean = (velocities - 0.5 * flown * field)[:, :, None] - spheres.ways[:, None, :]
     ago = inside
     if placement == "entry":
         approach, speed = (mean * separation).sum(axis=0), (mean**2).sum(axis=0)
@@ -149,25 +156,29 @@ def thermal_velocities(
     return np.asarray(along * normal + radius * across)
 
 
-def surfaces(spheres: Spheres, contacts: Contacts, leaving: Array) -> tuple[Array, Array]:
+def surfaces(
+    spheres: Spheres, contacts: Contacts, leaving: Array, now: tuple[Array, Array] | None = None
+) -> tuple[Array, Array]:
     """Velocity (d, N_c) and spin of the surface of each colloid.
 
-    With the first contact of every particle, at r and with an impulse
-    m_f (v - leaving - V_s - omega_s x r), the colloid ends the interval with V' and omega'. The
-    surface has V_s = V + share (V' - V) and omega_s = (omega + omega') / 2.
+    A contact of every particle, at r and with an impulse m_f (v - leaving - V_s - omega_s x r),
+    brings the colloid from V and omega to V' and omega'. The exchange as a whole must see the means
+    of both, or the colloid's temperature would come out too high: by half the fraction of its
+    velocity that it loses in an interval if V_s was V. What comes sees the mean velocity W on the
+    way of the interval, which between colloids that hold each other is not V. What leaves makes up
+    for it: by the free-molecular friction of a sphere, 1 of what leaves and r = 1/3 + pi/6 of what
+    comes (a disk: 1/2 + pi/4; Epstein, Phys. Rev. 23, 710, 1924), V_s = (1 + r) (V + V') / 2 - r W.
+    What comes does not know of the spin: omega_s = (omega + omega') / 2.
 
-    A colloid takes several contacts in an interval. If V_s was V, each would ignore what the others
-    do, and the colloid's temperature would come out too high by half the fraction of its velocity
-    that it loses in an interval. What comes in was decided by V; so for the exchange as a whole to
-    see (V + V') / 2, what leaves must see more of V'. The share follows from the free-molecular
-    friction of a sphere, 4/3 + pi/6 in units of which what leaves with V_s makes 1 (a disk: 3/2 +
-    pi/4; Epstein, Phys. Rev. 23, 710, 1924). What comes in does not know of the spin, so for that
-    the share is 1/2.
+    Between colloids that nearly touch, particles go to and fro. Each round of contacts changes the
+    velocities as the first does, from what the rounds before left, `now`.
     """
     dimensions, colloids = spheres.positions.shape
     spins = len(spheres.spins)
     share = SHARES[dimensions]
     velocity, spin = np.empty_like(spheres.velocities), np.empty_like(spheres.spins)
+    start, spinning = now or (spheres.velocities, spheres.spins)
+    start = start + (2 * share - 1) * (start - spheres.ways)
     for c in range(colloids):
         mine = contacts.colloids == c
         arms, given = contacts.arms[:, mine], (contacts.velocities - leaving)[:, mine]
@@ -181,7 +192,7 @@ def surfaces(spheres: Spheres, contacts: Contacts, leaving: Array) -> tuple[Arra
             )
             matrix[:dimensions, column] += of_surface.sum(axis=1)
             matrix[dimensions:, column] += torque(arms, of_surface).sum(axis=1)
-        right = inertia * np.concatenate([spheres.velocities[:, c], spheres.spins[:, c]])
+        right = inertia * np.concatenate([start[:, c], spinning[:, c]])
         right += np.concatenate([given.sum(axis=1), torque(arms, given).sum(axis=1)])
         motion = np.linalg.solve(matrix, right)
         velocity[:, c], spin[:, c] = motion[:dimensions], motion[dimensions:]
@@ -217,7 +228,6 @@ def reflect(
     particles = positions.shape[1]
     flown = np.full(particles, interval)
     momentum, angular = np.zeros_like(spheres.velocities), np.zeros_like(spheres.spins)
-    velocity, spin = spheres.velocities, spheres.spins
     for contact in range(MOST_CONTACTS):
         contacts = find_contacts(
             positions, velocities, flown, spheres, placement, interval, field, boundaries
@@ -225,8 +235,11 @@ def reflect(
         if not contacts.particles.size:
             break
         leaving = thermal_velocities(contacts, temperature, contact, random, particles)
-        if contact == 0:
-            velocity, spin = surfaces(spheres, contacts, leaving)
+        now = (
+            spheres.velocities + momentum / spheres.masses,
+            spheres.spins + angular / spheres.inertias,
+        )
+        velocity, spin = surfaces(spheres, contacts, leaving, now)
         on = contacts.colloids
         left = leaving + velocity[:, on] + cross(spin[:, on], contacts.arms)
         impulses = contacts.velocities - left
@@ -234,7 +247,7 @@ def reflect(
             component += np.bincount(on, impulse, len(component))
         for component, impulse in zip(angular, torque(contacts.arms, impulses), strict=True):
             component += np.bincount(on, impulse, len(component))
-        start = spheres.positions[:, on] - contacts.left * spheres.velocities[:, on]
+        start = spheres.positions[:, on] - contacts.left * spheres.ways[:, on]
         start += contacts.arms
         for axis in boundaries.walled:
             np.clip(start[axis], 0.0, boundaries.box[axis], out=start[axis])

@@ -5,14 +5,20 @@ collision they either reflect the fluid (IV) or are particles of their cells (V)
 components first: fluid (d, N), spheres (d, N_c), spins as in `rotation`.
 """
 
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from typing import Literal
 
 import numpy as np
 
 from lammps_inputs.system import Array, Rotation, Thermostat
 from srd_driver.reference import cell_coupling, thermostats
-from srd_driver.reference.boundaries import Boundaries, stream, virtual_particles
+from srd_driver.reference.boundaries import (
+    Boundaries,
+    cut_cells,
+    stream,
+    take_from_cells,
+    virtual_particles,
+)
 from srd_driver.reference.collision import Cells, collide, grid_shape, grid_shift
 from srd_driver.reference.counter_random import CounterRandom
 from srd_driver.reference.reflection import Spheres, reflect
@@ -67,13 +73,16 @@ class Suspension:
 
     def advance(self) -> None:
         """One interval, and the collision at its end."""
+        self.boundaries.taken.clear()
         fluid = (self.fluid_positions, self.fluid_velocities)
         stream(*fluid, self.field, self.interval, self.boundaries)
         self.boundaries.wrap(self.fluid_positions)
+        start = self.spheres.positions.copy()
         self._move_spheres()
+        means = (self.spheres.positions - start) / self.interval
         random = CounterRandom(self.seed, self.collisions)
         if self.coupling in ("entry", "nearest"):
-            self._reflect(random)
+            self._reflect(random, means)
         self._collide(random)
         self.collisions += 1
         if self.drift_interval and self.collisions % self.drift_interval == 0:
@@ -119,8 +128,9 @@ class Suspension:
         spheres.velocities[:] += time * (self.acceleration + forces / spheres.masses)
         kick(spheres.spins, torques, spheres.inertias, time)
 
-    def _reflect(self, random: CounterRandom) -> None:
-        fluid, spheres = (self.fluid_positions, self.fluid_velocities), self.spheres
+    def _reflect(self, random: CounterRandom, means: Array) -> None:
+        fluid = (self.fluid_positions, self.fluid_velocities)
+        spheres = replace(self.spheres, mean_velocities=means)
         placement: Literal["entry", "nearest"] = "entry" if self.coupling == "entry" else "nearest"
         momentum, angular = reflect(
             *(*fluid, spheres, placement, self.interval, 1.0, self.field, self.boundaries),
@@ -148,13 +158,18 @@ class Suspension:
         shape = grid_shape(boundaries.box, boundaries.periodic)
         cells = Cells.sort(positions, shift, shape, boundaries.periodic)
         fluid = np.bincount(cells.numbers[:count], minlength=cells.count).astype(float)
-        filled = virtual_particles(boundaries, cells, shift, fluid, 1.0, random)
+        cut = cut_cells(boundaries, cells, shift)
+        filled = virtual_particles(boundaries, cut, fluid, 1.0, random)
+        before = masses * velocities
         mean = cell_coupling.mean_velocity(velocities, masses, cells, *filled)
         collide(velocities, cells, mean, self.angle, self.rotation, random)
         if self.thermostat == "monte_carlo":
             cell_coupling.monte_carlo(velocities, masses, cells, 1.0, random)
         elif self.thermostat == "layer":
             thermostats.layer(velocities, cells)
+        lost = before - masses * velocities
+        in_cells = [np.bincount(cells.numbers, each, cells.count) for each in lost]
+        take_from_cells(boundaries, cut, np.array(in_cells))
         if self.coupling == "cell":
             self.fluid_velocities[:] = velocities[:, :count]
             self.spheres.velocities[:] = velocities[:, count:]

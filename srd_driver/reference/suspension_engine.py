@@ -7,6 +7,7 @@ import numpy as np
 
 from lammps_inputs import InitialState, Scene, initial_state
 from lammps_inputs.potentials.dlvo import Dlvo
+from lammps_inputs.system import Array
 from srd_driver.reference.boundaries import Boundaries
 from srd_driver.reference.engine import ReferenceEngine
 from srd_driver.reference.faults import SimulationFault
@@ -76,15 +77,30 @@ class SuspensionEngine(ReferenceEngine):
                 raise SimulationFault(f"step {self._step}: {fault}") from None
             self.collisions += 1
 
+    @property
+    def colloid_spins(self) -> Array:
+        """Angular velocities (N, 3) [1/t0]."""
+        return self._spins.T
+
     def averages(self) -> dict[str, float]:
         """What tables average, by column."""
         fluid, mean = self._fluid_velocities.mean(axis=1), self.mean_velocity()
         rotation = (self._system.inertias * self._spins**2).mean()
+        moved = self._fluid_velocities - fluid[:, None]
+        second, third, fourth = ((moved**power).mean(axis=1) for power in (2, 3, 4))
+        skewness, kurtosis = third / second**1.5, fourth / second**2 - 3
+        taken, interval = self._suspension.boundaries.taken, self._solvent.collision_time
+        nothing = np.zeros(3)
+        lower, upper = (taken.get((2, side), nothing) / interval for side in (False, True))
         return super().averages() | {
             "mean_velocity_z": float(mean[2]),
             "fluid_velocity_x": float(fluid[0]),
             "fluid_velocity_z": float(fluid[2]),
             "rotational_temperature": float(rotation),
+            **{f"fluid_skewness_{axis}": float(skewness[k]) for k, axis in enumerate("xyz")},
+            **{f"fluid_kurtosis_{axis}": float(kurtosis[k]) for k, axis in enumerate("xyz")},
+            "lower_wall_force_x": float(lower[0]),
+            "upper_wall_force_x": float(upper[0]),
         }
 
     def _parts(self) -> dict[str, Any]:

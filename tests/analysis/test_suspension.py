@@ -7,9 +7,10 @@ import pytest
 from scipy.sparse import coo_matrix
 from scipy.sparse.csgraph import connected_components
 
+from analysis import correlated_mean
 from analysis.clusters import cluster_series, labels
 from analysis.estimate import Estimate
-from analysis.normality import FALSE_ALARMS, normality
+from analysis.normality import FALSE_ALARMS, normal_probability, normality
 from analysis.radial_distribution import radial_distribution
 from analysis.sedimentation import richardson_zaki, settling_speeds
 from analysis.suspension_diffusion import (
@@ -156,3 +157,29 @@ def test_false_alarms_of_normality_are_as_often_as_stated() -> None:
     assert uniform.excess_kurtosis == pytest.approx(-1.2, abs=5 * uniform.kurtosis_error)
     with pytest.raises(ValueError, match="at least 100"):
         normality(random.normal(size=(10, 9, 3)), 1)
+
+
+def moments(velocities: np.ndarray, bias: float) -> float:
+    """How probable the skewness and kurtosis of samples (T, N) are, as means over time."""
+    centred = velocities - velocities.mean(axis=1, keepdims=True)
+    second, third, fourth = ((centred**power).mean(axis=1) for power in (2, 3, 4))
+    skewness = correlated_mean.mean(third / second**1.5)
+    return normal_probability(skewness, correlated_mean.mean(fourth / second**2 - 3 + bias))
+
+
+def test_false_alarms_of_moments_are_as_often_as_stated() -> None:
+    """Also of numbers that remember themselves; other distributions are found."""
+    random = np.random.default_rng(7)
+    keep, particles, times, runs = 0.6, 50, 200, 120
+    alarms = 0
+    for _ in range(runs):
+        series = np.empty((times, particles))
+        series[0] = random.normal(size=particles)
+        for step in range(1, times):
+            kick = math.sqrt(1 - keep**2) * random.normal(size=particles)
+            series[step] = keep * series[step - 1] + kick
+        alarms += moments(series, 6 / (particles + 1)) < 0.1
+    expected = 0.1 * runs
+    assert abs(alarms - expected) < 4 * math.sqrt(expected)
+    assert moments(random.uniform(size=(200, 50)), 0.0) < 1e-6
+    assert moments(random.exponential(size=(200, 50)), 0.0) < 1e-6

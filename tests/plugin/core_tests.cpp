@@ -369,7 +369,7 @@ void walls_cut_the_rows_that_reach_beyond_them()
 void two_pairs_of_walls_that_move()
 {
   const Grid<3> grid({4, 4, 4}, {true, false, false}, 1.0);
-  FaceVelocities<3> velocities{};
+  FaceVectors<3> velocities{};
   velocities[Face{1, true}.number()] = {3, 0, 0};
   const NoSlipWalls<3> walls(grid, 10, 1, velocities);
   CHECK(walls.gain() == 6);
@@ -390,9 +390,47 @@ void two_pairs_of_walls_that_move()
   for (int a = 0; a < 3; ++a) CHECK(close(sum[a], a == 0 ? 1.5 : 0, 5 * std::sqrt(0.1 / draws)));
 }
 
+// A particle of (3, -2) that a wall of 1 along x sends back as (-1, 2) has left (4, -4) there. What
+// walls take up in an interval is what the fluid loses in flight and collision, thermostat and all.
+void walls_take_up_what_the_fluid_loses()
+{
+  FaceVectors<2> velocities{};
+  velocities[Face{1, false}.number()] = {1, 0};
+  NoSlipWalls<2> slow(box_grid<2>(true), 10, 1, velocities);
+  Vector<2> v{3, -2};
+  slow.contact({1, false}, v);
+  CHECK(v[0] == -1 && v[1] == 2);
+  CHECK(slow.taken()[2][0] == 4 && slow.taken()[2][1] == -4 && slow.taken()[3][0] == 0);
+  slow.take({{0, 1}, 1}, {5, 6});
+  CHECK(slow.taken()[3][0] == 5 && slow.taken()[3][1] == 6);
+  slow.forget();
+  CHECK(slow.taken()[2][0] == 0 && slow.taken()[3][1] == 0);
+
+  auto how = method<2>();
+  how.interval = 0.5;
+  how.field = {0.3, 0};
+  how.walls = std::make_unique<NoSlipWalls<2>>(box_grid<2>(true), 12, 1, velocities);
+  how.thermostat = std::make_unique<MonteCarloThermostat<2>>(1.0);
+  Box<2> box(many<2>(160), std::move(how));
+  double most = 0;
+  for (int k = 0; k < 20; ++k) {
+    const auto before = box.solver->momentum();
+    box.collide();
+    const auto after = box.solver->momentum();
+    const auto taken = box.solver->momentum_of_walls();
+    for (int a = 0; a < 2; ++a) {
+      const double given = a == 0 ? 160 * 0.3 * 0.5 : 0;
+      CHECK(close(before[a] + given - after[a], taken[2][a] + taken[3][a], 1e-11));
+      CHECK(taken[0][a] == 0 && taken[1][a] == 0);    // there are none across x
+    }
+    most = std::max(most, std::abs(taken[3][1]));
+  }
+  CHECK(most > 1);
+}
+
 std::unique_ptr<Walls<2>> sliding(const Grid<2> &grid, double density, double speed)
 {
-  FaceVelocities<2> velocities{};
+  FaceVectors<2> velocities{};
   velocities[Face{1, false}.number()] = {-speed, 0};
   velocities[Face{1, true}.number()] = {speed, 0};
   return std::make_unique<NoSlipWalls<2>>(grid, density, 1.0, velocities);
@@ -730,6 +768,7 @@ int main()
   virtual_particles_have_the_right_variance();
   walls_cut_the_rows_that_reach_beyond_them();
   two_pairs_of_walls_that_move();
+  walls_take_up_what_the_fluid_loses();
   sliding_walls_drive_couette_flow();
   fluid_thrown_by_a_wall_is_near();
   layers_are_sums();

@@ -88,12 +88,24 @@ class Suspension:
     def arrays(self) -> dict[str, Array]:
         """The state, as `End` has it."""
         motion, spheres = self.motion, self.motion.spheres
+        d, still = self.dimensions, np.zeros(self.dimensions)
+        forces = np.zeros((3, 2, 3))
+        for axis in range(d):
+            for upper in (0, 1):
+                taken = motion.boundaries.taken.get((axis, bool(upper)), still)
+                forces[axis, upper, :d] = taken / motion.interval
+        moved = motion.fluid_velocities - motion.fluid_velocities.mean(axis=1, keepdims=True)
+        second, third, fourth = ((moved**power).mean(axis=1) for power in (2, 3, 4))
+        moments = np.zeros((2, 3))
+        moments[:, :d] = third / second**1.5, fourth / second**2 - 3
         return {
             "fluid_positions": motion.fluid_positions,
             "fluid_velocities": motion.fluid_velocities,
             "positions": spheres.positions,
             "velocities": spheres.velocities,
             "spins": spheres.spins,
+            "moments": moments.ravel(),
+            "forces_on_walls": forces.ravel(),
         }
 
     def write(self, folder: Path) -> None:
@@ -144,11 +156,12 @@ class Suspension:
             + " ".join(keywords),
             *("thermo_modify lost error", "variable steps index 1", "run ${steps}"),
             "fix_modify fluid save end.fluid",
+            f'print "{" ".join(f"$(f_fluid[{k}]:%.17g)" for k in range(6, 30))}" file end.vector',
             "write_dump all custom end.dump id xu yu zu vx vy vz omegax omegay omegaz "
             "modify sort id format float %.17g",
         ]
         if d == 2:
-            lines.insert(-5, "fix flat all enforce2d")
+            lines.insert(-6, "fix flat all enforce2d")
         (folder / "in.lammps").write_text("\n".join(lines) + "\n")
 
     def _three(self, values: Array) -> str:
@@ -169,6 +182,8 @@ class End:
     positions: Array
     velocities: Array
     spins: Array
+    moments: Array
+    forces_on_walls: Array
 
 
 def run_suspension(
@@ -184,7 +199,9 @@ def run_suspension(
     positions, velocities = read_fluid(folder / "end.fluid")
     d = suspension.dimensions
     spins = rows[7:] if d == 3 else rows[9:]
-    return End(positions.T, velocities.T, rows[1 : 1 + d], rows[4 : 4 + d], spins)
+    spheres = (rows[1 : 1 + d], rows[4 : 4 + d], spins)
+    vector = np.loadtxt(folder / "end.vector")
+    return End(positions.T, velocities.T, *spheres, vector[:6], vector[6:])
 
 
 def differences(end: End, suspension: Suspension) -> dict[str, float]:

@@ -78,6 +78,7 @@ def test_every_particle_agrees_after_30_collisions(
     if expected.spheres:
         moved = expected.arrays["velocities"] - CASES[case].arrays["velocities"]
         assert abs(moved).max() > 0.1
+    assert (abs(end.forces_on_walls).max() > 1) == (not all(expected.periodic))
 
 
 def test_momentum_is_kept_at_every_collision_under_a_compensated_weight() -> None:

@@ -7,7 +7,7 @@ import pytest
 from numpy.testing import assert_allclose
 
 from srd_driver.reference import cell_coupling
-from srd_driver.reference.boundaries import Boundaries, stream, virtual_particles
+from srd_driver.reference.boundaries import Boundaries, cut_cells, stream, virtual_particles
 from srd_driver.reference.collision import Cells
 from srd_driver.reference.counter_random import CounterRandom
 from srd_driver.reference.faults import SimulationFault
@@ -173,11 +173,10 @@ def test_virtual_particles_move_with_their_walls() -> None:
     cells = Cells((4, 5), np.zeros(0, dtype=np.intp))
     fluid = np.zeros(20)
     fluid[16:] = 4
+    cut = cut_cells(tube, cells, np.array([0.2, 0.3]))
     numbers, momenta = [], []
     for step in range(2000):
-        number, momentum = virtual_particles(
-            tube, cells, np.array([0.2, 0.3]), fluid, 2.0, CounterRandom(4, step)
-        )
+        number, momentum = virtual_particles(tube, cut, fluid, 2.0, CounterRandom(4, step))
         numbers.append(number)
         momenta.append(momentum)
     assert_allclose(numbers[0], [10] * 4 + [0] * 12 + [6] * 4)

@@ -51,11 +51,16 @@ def test_deck_driver_and_resumed_run_are_the_same(
     assert summary["finished"]
     expected = {"settling_speed", "diffusion", "clusters", "rotational_temperature"}
     assert expected | {"temperature", "colloid_temperature"} <= summary.keys()
+    turned = fields.get("coupling") == "reflection"
+    assert ("rotational_diffusion" in summary) == turned
     assert ("shear_flow" in summary) == ("shear_rate" in fields)
     assert summary["settling_speed"].keys() == {
         *("zero_momentum", "relative_to_fluid", "zero_volume_flux"),
     }
     assert summary["diffusion"].keys() == {"msd", "green_kubo", "infinite_box"}
+    assert {"skewness", "excess_kurtosis"} <= summary["fluid_velocity_distribution"].keys()
+    if "shear_rate" in fields:
+        assert {"stress", "viscosity"} <= summary["shear_flow"].keys()
     assert {"largest", "number", "bonds_per_colloid"} <= summary["clusters"].keys()
 
 
@@ -73,8 +78,14 @@ def test_the_reference_engine_begins_alike_and_resumes_bit_for_bit(
         runs.append(RunDirectory(tmp_path / engine))
     numpy_frames, lammps_frames = (run.particles().positions[:4] for run in runs)
     np.testing.assert_allclose(numpy_frames, lammps_frames, rtol=0, atol=1e-5)
+    if case == "reflection":
+        spins = [run.particles().spins for run in runs]
+        assert spins[0] is not None
+        assert spins[1] is not None
+        np.testing.assert_allclose(spins[0][:4], spins[1][:4], rtol=0, atol=1e-5)
+        assert abs(spins[0][3]).max() > 0
     of_numpy, of_lammps = (run.table() for run in runs)
-    for column in ("fluid_velocity_z", "mean_velocity_z", "rotational_temperature"):
+    for column in of_numpy.columns:
         np.testing.assert_allclose(of_numpy[column][:3], of_lammps[column][:3], rtol=0, atol=1e-5)
     kill_and_resume(scene, "reference", tmp_path / "killed")
     same_bytes(tmp_path / "reference", tmp_path / "killed", scene)
