@@ -11,16 +11,25 @@ FRAME = b"ITEM: TIMESTEP"
 def cut_output(path: Path, kind: str, step: int) -> None:
     """Drop what the file of an output says of the time after a step; a missing one is left.
 
+    Raises:
+        RunDirectoryError: when the file holds something else.
+    """
+    if path.exists():
+        size = kept_bytes(path, kind, step)
+        with path.open("r+b") as file:
+            file.truncate(size)
+
+
+def kept_bytes(path: Path, kind: str, step: int) -> int:
+    """How much of the file of an output is kept when a run goes on from a step.
+
     A trajectory loses the frame of the step too: the engine writes that one again. A table loses
     titles at its end, which LAMMPS repeats when it goes on with a file.
 
     Raises:
         RunDirectoryError: when the file holds something else.
     """
-    if path.exists():
-        size = _first_frame(path, step) if kind == "trajectory" else _end_of_rows(path, step)
-        with path.open("r+b") as file:
-            file.truncate(size)
+    return _first_frame(path, step) if kind == "trajectory" else _end_of_rows(path, step)
 
 
 def _lines(path: Path) -> Iterator[tuple[int, bytes]]:

@@ -13,8 +13,8 @@ from typing import Any, TextIO
 from lammps_inputs import Scene
 from lammps_inputs.deck import check_engine, has_deck, script, write_deck
 from lammps_inputs.manifest import manifest
-from run_files.checksums import Checksum
-from run_files.cutting import cut_output
+from run_files.checksums import Checksum, GrowingFile
+from run_files.cutting import cut_output, kept_bytes
 from run_files.manifest import CHANGEABLE, SCENE, read_manifest
 from run_files.manifest import NAME as MANIFEST
 from run_files.names import is_checkpoint
@@ -136,7 +136,8 @@ def reopen(scene: Scene, engine: str, directory: Path, ranks: int) -> Progress:
     if progress.step < scene.system.clock.total_steps:
         for file in progress.checksums:
             progress.require(directory, file)
-        progress = progress.model_copy(update={"finished": False})  # it may be made longer
+        kept = _kept(scene, directory, progress)
+        progress = progress.model_copy(update={"finished": False, "checksums": kept})
         try:
             (directory / FAILURE).unlink(missing_ok=True)
             write_progress(directory, progress)  # drops a checkpoint that a kill left half written
@@ -148,6 +149,19 @@ def reopen(scene: Scene, engine: str, directory: Path, ranks: int) -> Progress:
         except OSError as error:
             raise RunError(f"cannot write {directory}: {error.strerror or error}") from None
     return progress
+
+
+def _kept(scene: Scene, directory: Path, progress: Progress) -> dict[str, Checksum]:
+    """Checksums of what will be left of the outputs, so that a kill once they are cut does no harm.
+
+    Raises:
+        RunDirectoryError: when an output is damaged.
+    """
+    return progress.checksums | {
+        output.file: GrowingFile(path).checksum(kept_bytes(path, output.kind, progress.step))
+        for output in scene.system.outputs
+        if output.file in progress.checksums and (path := directory / output.file)
+    }
 
 
 def is_half_made(directory: Path) -> bool:

@@ -13,7 +13,7 @@ from lammps_inputs import Scene, initial_state, make_scene
 from lammps_inputs.manifest import manifest
 from run_files.manifest import read_manifest
 from srd_driver import RunError, Simulation
-from srd_driver.resume import write_scene
+from srd_driver.resume import reopen, write_scene
 from tests.dumps import frames
 from tests.parts import solvent_of
 
@@ -117,6 +117,19 @@ def test_time_runs_in_whole_sampling_intervals() -> None:
         assert run.time == pytest.approx(0.15)
         run.run(0.001)
         assert run.time == pytest.approx(0.3)
+
+
+@pytest.mark.parametrize("engine", ENGINES)
+def test_a_kill_while_a_run_is_taken_up_does_no_harm(engine: str, tmp_path: Path) -> None:
+    """Once the outputs are cut, and before the engine writes the frame of the checkpoint again."""
+    scene = channel(length=20, colloids=1)
+    with Simulation(scene, engine, tmp_path) as run:
+        run.run(0.6)
+    for _ in range(2):
+        reopen(scene, engine, tmp_path, 1)
+    with Simulation(scene, engine, tmp_path, resume=True) as run:
+        run.finish()
+    assert list(frames(tmp_path / "trajectory.lammpsdump")) == list(range(0, 1201, 150))
 
 
 @pytest.mark.parametrize("engine", ENGINES)

@@ -23,8 +23,8 @@ def summary(fields: dict[str, Any], directory: Path) -> dict[str, Any]:
 def test_reflecting_colloids_that_hold_each_other_are_not_hot(tmp_path: Path) -> None:
     """At 35 %: 1.09 if what comes was taken to see V instead of its mean.
 
-    After 60 t0 the clusters that form still heat them, to 1.033 +- 0.012 (four seeds); then 1.016 +-
-    0.003.
+    After 60 t0 the clusters that form still heat them, to 1.033 +- 0.012 (four seeds); after 300 it
+    is 1.016 +- 0.003.
     """
     lengths = {"equilibration": 300, "duration": 300}
     found = summary(REFLECTION | lengths | {"volume_fraction": 0.35}, tmp_path)
