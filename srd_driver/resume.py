@@ -157,11 +157,13 @@ def _kept(scene: Scene, directory: Path, progress: Progress) -> dict[str, Checks
     Raises:
         RunDirectoryError: when an output is damaged.
     """
-    return progress.checksums | {
-        output.file: GrowingFile(path).checksum(kept_bytes(path, output.kind, progress.step))
-        for output in scene.system.outputs
-        if output.file in progress.checksums and (path := directory / output.file)
-    }
+    kept = dict(progress.checksums)
+    for output in scene.system.outputs:
+        if output.file in kept:
+            path = directory / output.file
+            size = kept_bytes(path, output.kind, progress.step)
+            kept[output.file] = GrowingFile(path).checksum(size)
+    return kept
 
 
 def is_half_made(directory: Path) -> bool:
