@@ -127,6 +127,7 @@ RestartHeader read_restart(const char *buffer, std::uint64_t seed, const OnPull 
   if (header.apart()) {
     Apart apart;
     std::memcpy(&apart, next, sizeof apart);
+    if (!std::memchr(apart.file, 0, sizeof apart.file)) throw Fault("restart: damaged");
     on_apart(apart);
     return header;
   }

@@ -16,7 +16,6 @@ CRYSTAL = 1.03
 FLUID = 0.75
 ALL = "lane_order"  # phi by all disks in a lane
 PHI = "lane_order_near"  # the reading of phi that has the paper's numbers (docs/errata.md)
-LARGEST = 10.0  # field of a configurational run
 UP, DOWN = 1, 2  # seeds
 ALIKE = ("dimension", "density", "thermostat", "seed")  # what the runs of a ladder share
 MELTED = 1.25  # field above which a configurational run needs short steps to last
