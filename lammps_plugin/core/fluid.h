@@ -5,10 +5,12 @@
 #include "grid.h"
 #include "memory.h"
 
+#include <algorithm>
 #include <cstddef>
 #include <cstdint>
 #include <stdexcept>
 #include <string>
+#include <type_traits>
 
 namespace mpc {
 
@@ -29,18 +31,51 @@ struct FluidHeader {
   std::int64_t dimension, particles, collisions;
 };
 
-template <int D> struct Fluid {
-  std::array<Array<double>, D> x, v;
+// How a state is kept: in 64 bits for each number, or in 32. In single precision a coordinate is a
+// whole number of places, 2^20 to a cell, counted from the middle of the process's cells: they are
+// as fine in any box, and the same on any number of processes.
+template <class Real> struct Kept {
+  using Coordinate = double;
+};
+template <> struct Kept<float> {
+  using Coordinate = std::int32_t;
+};
+constexpr int PLACE_BITS = 20;
+constexpr double PLACES = 1 << PLACE_BITS;    // in the edge of a cell
+
+// Where the places are along an axis.
+struct Places {
+  double middle, length, period;    // of one, and of the box, or 0 between walls
+  std::int32_t first, last;         // between walls
+};
+
+template <int D, class Real = double> struct Fluid {
+  static constexpr bool single = std::is_same_v<Real, float>;
+  using Coordinate = typename Kept<Real>::Coordinate;
+
+  std::array<Array<Coordinate>, D> x;    // see position()
+  std::array<Array<Real>, D> v;
   Array<std::uint32_t> id;
   Array<std::int32_t> cell;    // among this process's cells
+  std::array<Places, D> places;    // in single precision
 
   int size() const { return static_cast<int>(id.size()); }
+
+  double position(int axis, int i) const
+  {
+    if constexpr (single)
+      return places[axis].middle + places[axis].length * x[axis][i];
+    else
+      return x[axis][i];
+  }
+
+  void set_position(int axis, int i, double position) { x[axis][i] = kept(axis, position); }
 
   Particle<D> particle(int i) const
   {
     Particle<D> p{static_cast<double>(id[i]), {}, {}};
     for (int a = 0; a < D; ++a) {
-      p.x[a] = x[a][i];
+      p.x[a] = position(a, i);
       p.v[a] = v[a][i];
     }
     return p;
@@ -50,8 +85,8 @@ template <int D> struct Fluid {
   {
     if (id.size() == id.capacity()) grow();
     for (int a = 0; a < D; ++a) {
-      x[a].push_back(p.x[a]);
-      v[a].push_back(p.v[a]);
+      x[a].push_back(kept(a, p.x[a]));
+      v[a].push_back(static_cast<Real>(p.v[a]));
     }
     id.push_back(static_cast<std::uint32_t>(p.id));
     cell.push_back(in_cell);
@@ -78,9 +113,19 @@ template <int D> struct Fluid {
     cell.clear();
   }
 
-  double bytes() const { return id.capacity() * (2.0 * D * sizeof(double) + 8); }
+  double bytes() const { return id.capacity() * (2.0 * D * sizeof(Real) + 8); }
 
  private:
+  Coordinate kept(int axis, double position) const
+  {
+    if constexpr (!single) return position;
+    const auto &of = places[axis];
+    position -= of.middle;
+    if (of.period > 0) position -= of.period * std::rint(position / of.period);
+    const double place = std::rint(position / of.length);    // the nearest
+    return static_cast<Coordinate>(std::clamp<double>(place, of.first, of.last));
+  }
+
   // By little: the doubling of a vector would waste up to half of the memory.
   void grow()
   {

@@ -13,7 +13,10 @@
 
 #include "coupling.h"
 #include "migration.h"
+#include "profile.h"
+#include "flow.h"
 #include "random_solvent.h"
+#include "single.h"
 #include "streaming.h"
 #include "thermostat.h"
 #include "tile_order.h"
@@ -32,25 +35,61 @@ template <int D> struct Method {
   std::unique_ptr<Thermostat<D>> thermostat;         // or none
   std::unique_ptr<RandomSolvent<D>> random_solvent;  // or none
   std::unique_ptr<Coupling<D>> coupling;             // or none
+  double thermal_speed = 1;
 };
 
-template <int D> class Solver {
+// A solver as its host sees it, in either precision.
+template <int D> class AnySolver {
+ public:
+  virtual ~AnySolver() = default;
+
+  virtual const Grid<D> &grid() const = 0;
+  virtual Coupling<D> *coupling() const = 0;
+  virtual std::uint64_t collisions() const = 0;
+  virtual double particles() const = 0;    // of all processes
+
+  virtual int size() const = 0;            // of this process's fluid
+  virtual Particle<D> particle(int) const = 0;
+
+  virtual void reset(std::uint64_t collisions, const std::array<int, D> &lower,
+                     const std::array<int, D> &upper) = 0;
+  virtual void add(Particle<D>) = 0;
+  virtual void count() = 0;
+  virtual void redistribute(const std::array<int, D> &lower, const std::array<int, D> &upper) = 0;
+
+  virtual void turn() = 0;
+  virtual void zero_momentum() = 0;
+  virtual void add_velocity(const Vector<D> &) = 0;
+  virtual Vector<D> momentum() = 0;
+  virtual std::vector<Layer> layers(int bins) = 0;
+  virtual void look(FlowSums<D> &, const Vector<D> &origin) = 0;
+
+  virtual void find_near(const std::vector<Colloid<D>> &, double colloid_speed) = 0;
+  virtual void begin_interval(const std::vector<Colloid<D>> &, double colloid_speed) = 0;
+  virtual void end_interval(const std::vector<Colloid<D>> & = {}) = 0;
+
+  virtual double memory() const = 0;
+};
+
+template <int D, class Real = double> class Solver : public AnySolver<D> {
  public:
   Solver(Grid<D> grid, Method<D> method, Processes &processes)
     : grid_(grid), method_(std::move(method)), processes_(processes)
   {
   }
 
-  const Grid<D> &grid() const { return grid_; }
-  const Fluid<D> &fluid() const { return fluid_; }
-  Coupling<D> *coupling() const { return method_.coupling.get(); }
-  std::uint64_t collisions() const { return collisions_; }
-  double particles() const { return particles_; }
+  const Grid<D> &grid() const override { return grid_; }
+  const Fluid<D, Real> &fluid() const { return fluid_; }
+  Coupling<D> *coupling() const override { return method_.coupling.get(); }
+  std::uint64_t collisions() const override { return collisions_; }
+  double particles() const override { return particles_; }
+  int size() const override { return fluid_.size(); }
+  Particle<D> particle(int i) const override { return fluid_.particle(i); }
 
   // Make room for the fluid as it was after so many collisions; then add all particles, in
   // whichever order, and count them: each process keeps its own.
   void reset(std::uint64_t collisions, const std::array<int, D> &lower,
-             const std::array<int, D> &upper)
+             const std::array<int, D> &upper) override
   {
     fluid_.clear();
     turning_ = false;
@@ -60,21 +99,21 @@ template <int D> class Solver {
     if (collisions > 0) draw_shift(collisions - 1);
   }
 
-  void add(Particle<D> particle)
+  void add(Particle<D> particle) override
   {
     for (int a = 0; a < D; ++a) particle.x[a] = wrapped<D>(grid_, a, particle.x[a]);
     const int cell = grid_.local(particle.x);
     if (cell >= 0) fluid_.append(particle, cell);
   }
 
-  void count()
+  void count() override
   {
     particles_ = fluid_.size();
     processes_.sum(&particles_, 1);
   }
 
   // Take over other cells, between intervals.
-  void redistribute(const std::array<int, D> &lower, const std::array<int, D> &upper)
+  void redistribute(const std::array<int, D> &lower, const std::array<int, D> &upper) override
   {
     if (!processes_.any(lower != grid_.lower || upper != grid_.upper)) return;
     for (int a = 0; a < D; ++a)
@@ -88,28 +127,30 @@ template <int D> class Solver {
   }
 
   // Velocities as they are after the last collision.
-  void turn()
+  void turn() override
   {
     if (turning_) turn(0, fluid_.size());
     turning_ = false;
   }
 
-  void zero_momentum()
+  void zero_momentum() override
   {
     Vector<D> mean = momentum();
     for (int a = 0; a < D; ++a)
-      for (double &component : fluid_.v[a]) component -= mean[a] / particles_;
+      for (auto &component : fluid_.v[a])
+        component = static_cast<Real>(component - mean[a] / particles_);
   }
 
-  void add_velocity(const Vector<D> &change)
+  void add_velocity(const Vector<D> &change) override
   {
     turn();
     for (int a = 0; a < D; ++a)
-      for (double &component : fluid_.v[a]) component += change[a];
+      for (auto &component : fluid_.v[a])
+        component = static_cast<Real>(component + change[a]);
   }
 
   // Of all processes.
-  Vector<D> momentum()
+  Vector<D> momentum() override
   {
     turn();
     Vector<D> total{};
@@ -119,8 +160,20 @@ template <int D> class Solver {
     return total;
   }
 
+  std::vector<Layer> layers(int bins) override
+  {
+    turn();
+    return mpc::layers(fluid_, grid_, bins, processes_);
+  }
+
+  void look(FlowSums<D> &sums, const Vector<D> &origin) override
+  {
+    turn();
+    sums.look(fluid_, grid_, origin);
+  }
+
   // Let the coupling know the forces between intervals; nothing moves.
-  void find_near(const std::vector<Colloid<D>> &colloids, double colloid_speed)
+  void find_near(const std::vector<Colloid<D>> &colloids, double colloid_speed) override
   {
     turn();
     method_.coupling->begin(grid_, colloids, colloid_speed);
@@ -128,7 +181,7 @@ template <int D> class Solver {
     method_.coupling->ready();
   }
 
-  void begin_interval(const std::vector<Colloid<D>> &colloids, double colloid_speed)
+  void begin_interval(const std::vector<Colloid<D>> &colloids, double colloid_speed) override
   {
     if (collisions_ % SORT_INTERVAL == 0) tiles_.sort(fluid_, grid_);
     auto *coupling = method_.coupling.get();
@@ -138,7 +191,7 @@ template <int D> class Solver {
     if (coupling) coupling->ready();
   }
 
-  void end_interval(const std::vector<Colloid<D>> &colloids = {})
+  void end_interval(const std::vector<Colloid<D>> &colloids = {}) override
   {
     if (reflecting()) {
       method_.coupling->meet(grid_, colloids, {method_.seed, collisions_});
@@ -161,13 +214,16 @@ template <int D> class Solver {
   }
 
   // In bytes, on this process.
-  double memory() const
+  double memory() const override
   {
     return fluid_.bytes() + sums_.of.capacity() * (1.0 * sizeof(CellSum<D>) + sizeof(Turn<D>)) +
         tiles_.bytes();
   }
 
  private:
+  static constexpr bool single = Fluid<D, Real>::single;
+  using KeptTurn = std::conditional_t<single, SingleTurn<D>, Turn<D>>;
+
   static constexpr int BLOCK = 512;           // particles; their state fits the first-level cache
   static constexpr int AHEAD = 32;            // particles
   static constexpr int SORT_INTERVAL = 64;    // collisions, in which a particle moves a few cells
@@ -205,11 +261,14 @@ template <int D> class Solver {
     sums_.of.assign(grid_.cells(), {});
     sums_.guests.clear();
     turns_.assign(grid_.cells(), {});
+    if constexpr (single) fluid_.places = places_of(grid_);
   }
 
   void draw_shift(std::uint64_t collision)
   {
-    if (method_.shifted) grid_.draw_shift({method_.seed, collision});
+    if (!method_.shifted) return;
+    grid_.draw_shift({method_.seed, collision});
+    if constexpr (single) round_shift(grid_);
   }
 
   // Ask for what the particle a few further on needs of its cell: caches do not foresee it. Inlined
@@ -235,6 +294,14 @@ template <int D> class Solver {
 
   void turn(int begin, int end)
   {
+    if constexpr (single)
+      mpc::turn<D>(fluid_, turns_, begin, end);
+    else
+      turn_in_double(begin, end);
+  }
+
+  void turn_in_double(int begin, int end)
+  {
     const Turn<D> *turns = turns_.data();
     const std::int32_t *cell = fluid_.cell.data();
     double *__restrict vx = fluid_.v[0].data();
@@ -259,14 +326,22 @@ template <int D> class Solver {
 
   void fly(int begin, int end)
   {
-    std::array<double *, D> x, v;
-    for (int a = 0; a < D; ++a) {
-      x[a] = fluid_.x[a].data();
-      v[a] = fluid_.v[a].data();
-    }
     try {
+      if constexpr (single) {
+        Vector<D> kick;
+        for (int a = 0; a < D; ++a)
+          kick[a] = dithered(method_.interval * method_.field[a], method_.thermal_speed, collisions_);
+        mpc::fly<D>(fluid_, grid_, method_.field, kick, method_.interval, method_.walls.get(), begin, end);
+        return;
+      } else {
+      std::array<double *, D> x, v;
+      for (int a = 0; a < D; ++a) {
+        x[a] = fluid_.x[a].data();
+        v[a] = fluid_.v[a].data();
+      }
       stream<D>(x, v, Field<D>{method_.field}, method_.interval, method_.walls.get(), begin,
                 end);
+      }
     } catch (const TooManyBounces &bounces) {
       throw bounces.fault(fluid_.id[bounces.index]);
     }
@@ -276,6 +351,9 @@ template <int D> class Solver {
   // box, or is nowhere, becomes a stray; sum() looks closer.
   void sort(int begin, int end)
   {
+    if constexpr (single) {
+      find_cells(fluid_, grid_, method_.interval, begin, end, STRAY);
+    } else {
     std::int32_t *__restrict cell = fluid_.cell.data();
     std::int32_t stride = 1;
     for (int a = 0; a < D; ++a) {
@@ -300,25 +378,43 @@ template <int D> class Solver {
       }
       stride *= extent;
     }
+    }
   }
 
   void sum(int begin, int end)
   {
-    constexpr int line = CACHE_LINE / sizeof(double);
-    for (int i = begin; i < end; ++i) {
-      if (i % line == 0) prefetch_state(i + BLOCK);    // of the next block
-      if constexpr (D == 3) prefetch(sums_.of, i);
-      int cell = fluid_.cell[i];
-      if (cell < 0) {
-        if (cell == TAKEN) continue;
-        cell = fluid_.cell[i] = find(i);
-        if (cell < 0) {
-          strays_.push_back(i);
-          continue;
-        }
+    constexpr int line = CACHE_LINE / sizeof(Real);
+    if constexpr (single) {
+      const auto *cell = fluid_.cell.data();
+      const auto add_four = AddFour<D>(fluid_, sums_, method_.thermostat != nullptr);
+      for (int i = begin; i < end; i += 4) {
+        if (i % line == 0) prefetch_state(i + BLOCK);    // of the next block
+        if (i + 4 <= end && (cell[i] | cell[i + 1] | cell[i + 2] | cell[i + 3]) >= 0)
+          add_four(i);
+        else
+          for (int k = i; k < std::min(i + 4, end); ++k) sum_closely(k);
       }
-      add_to(sums_.of[cell], i);
+    } else {
+      for (int i = begin; i < end; ++i) {
+        if (i % line == 0) prefetch_state(i + BLOCK);
+        if constexpr (D == 3) prefetch(sums_.of, i);
+        sum_closely(i);
+      }
     }
+  }
+
+  __attribute__((always_inline)) inline void sum_closely(int i)
+  {
+    int cell = fluid_.cell[i];
+    if (cell < 0) {
+      if (cell == TAKEN) return;
+      cell = fluid_.cell[i] = find(i);
+      if (cell < 0) {
+        strays_.push_back(i);
+        return;
+      }
+    }
+    add_to(sums_.of[cell], i);
   }
 
   // Keep back what has met colloids.
@@ -327,7 +423,7 @@ template <int D> class Solver {
     for (int i = begin; i < end; ++i)
       if (fluid_.cell[i] == STRAY) fluid_.cell[i] = find(i);
     const auto before = held_.size();
-    method_.coupling->watch(fluid_, begin, end, held_);
+    if constexpr (!single) method_.coupling->watch(fluid_, begin, end, held_);
     for (auto k = before; k < held_.size(); ++k) fluid_.cell[held_[k]] = TAKEN;
   }
 
@@ -349,8 +445,8 @@ template <int D> class Solver {
       coupling.reflect_next(flight);
       const int cell = fluid_.cell[i] = bounce(flight);
       for (int a = 0; a < D; ++a) {
-        fluid_.x[a][i] = flight.x[a];
-        fluid_.v[a][i] = flight.v[a];
+        fluid_.set_position(a, i, flight.x[a]);
+        fluid_.v[a][i] = static_cast<Real>(flight.v[a]);
       }
       if (cell < 0) {
         strays_.push_back(i);
@@ -404,13 +500,18 @@ template <int D> class Solver {
   {
     Vector<D> x;
     for (int a = 0; a < D; ++a) {
-      x[a] = fluid_.x[a][i] = wrapped<D>(grid_, a, fluid_.x[a][i]);
+      x[a] = wrapped<D>(grid_, a, fluid_.position(a, i));
+      fluid_.set_position(a, i, x[a]);
       const bool inside = x[a] >= 0 && x[a] <= grid_.box[a];
       if (!inside || !std::isfinite(fluid_.v[a][i]))
         throw Fault("fluid particle " + std::to_string(fluid_.id[i]) + " has " + "xyz"[a] + " = " +
                     std::to_string(x[a]) + " and v" + "xyz"[a] + " = " +
                     std::to_string(fluid_.v[a][i]) +
                     ": not a number, or beyond a wall; the time step is too long");
+      if (single && std::abs(fluid_.v[a][i]) * method_.interval >= LONGEST_FLIGHT * grid_.edge)
+        throw Fault("precision single: fluid particle " + std::to_string(fluid_.id[i]) + " has v" +
+                    "xyz"[a] + " = " + std::to_string(fluid_.v[a][i]) + ": it flies further than " +
+                    std::to_string(static_cast<int>(LONGEST_FLIGHT)) + " cells");
     }
     return grid_.local(x);
   }
@@ -438,23 +539,66 @@ template <int D> class Solver {
       make_turns(random);
       turning_ = true;
       if (thermostat) {
-        Collision<D> collision{grid_, random, sums_, turns_, processes_};
-        thermostat->scale(collision);
+        if constexpr (!single) {
+          Collision<D> collision{grid_, random, sums_, turns_, processes_};
+          thermostat->scale(collision);
+        }
         if (thermostat->redraws()) {
           turn();
           thermostat->redraw(fluid_, random);
         }
       }
-      if (joining) coupling->turn(turns_, processes_);
+      if constexpr (!single)
+        if (joining) coupling->turn(turns_, processes_);
     }
-    if (solvent) {
-      turn();
-      solvent->redraw(fluid_, random, processes_, particles_);
-    }
+    if constexpr (!single)
+      if (solvent) {
+        turn();
+        solvent->redraw(fluid_, random, processes_, particles_);
+      }
     ++collisions_;
   }
 
   void make_turns(const CounterRandom &random)
+  {
+    if constexpr (single)
+      make_single_turns(random);
+    else
+      make_double_turns(random);
+  }
+
+  void make_single_turns(const CounterRandom &random)
+  {
+    const auto *walls = method_.walls.get();
+    auto *thermostat = method_.thermostat.get();
+    const auto turn_of = [&](int cell, const std::array<int, D> &rows) {
+      bring_together(sums_.of[cell]);
+      const auto number = grid_.number(rows);
+      Turn<D> turn;
+      method_.rotation.draw(random, number, turn);
+      fix_point<D>(turn, sums_.mean(cell));
+      if (walls)
+        if (const auto cut = walls->cutting(grid_, rows); cut.count > 0)
+          fix_point<D>(turn, walls->mean_of_cut(cut, sums_, cell, random, number));
+      return turn;
+    };
+    if (!thermostat || thermostat->redraws()) {
+      grid_.each_cell([&](int cell, const std::array<int, D> &rows) {
+        turns_[cell] = SingleTurn<D>(turn_of(cell, rows));
+      });
+      return;
+    }
+    wide_turns_.resize(grid_.cells());
+    grid_.each_cell([&](int cell, const std::array<int, D> &rows) {
+      wide_turns_[cell] = turn_of(cell, rows);
+    });
+    Collision<D> collision{grid_, random, sums_, wide_turns_, processes_};
+    thermostat->scale(collision);
+    for (int cell = 0; cell < grid_.cells(); ++cell)
+      turns_[cell] = SingleTurn<D>(wide_turns_[cell]);
+  }
+
+  void make_double_turns(const CounterRandom &random)
   {
     grid_.each_cell([&](int cell, const std::array<int, D> &rows) {
       method_.rotation.draw(random, grid_.number(rows), turns_[cell]);
@@ -472,17 +616,18 @@ template <int D> class Solver {
   Grid<D> grid_;
   Method<D> method_;
   Processes &processes_;
-  Fluid<D> fluid_;
+  Fluid<D, Real> fluid_;
   double particles_ = 0;             // of all processes
   std::uint64_t collisions_ = 0;
   CellSums<D> sums_;
-  Array<Turn<D>> turns_;       // of the last collision
+  Array<KeptTurn> turns_;      // of the last collision
+  Array<Turn<D>> wide_turns_;  // in single precision, before they are rounded for a thermostat
   bool turning_ = false;             // whether they are still to be applied
   std::vector<int> strays_;          // indices of particles in no cell of this process
   std::vector<int> held_;            // particles that have met colloids
   std::vector<Particle<D>> travelling_;
   std::vector<Flight<D>> landed_;
-  TileOrder<D> tiles_;
+  TileOrder<D, Real> tiles_;
 };
 
 }    // namespace mpc
