@@ -138,6 +138,11 @@ class Rotation {
  public:
   Rotation(double angle, Axes axes) : cosine_(std::cos(angle)), sine_(std::sin(angle)), axes_(axes)
   {
+    for (int choice = 0; choice < 6; ++choice) {
+      Vector<3> n{};
+      n[choice / 2] = choice % 2 ? -1 : 1;
+      about_coordinates_[choice] = about(n);
+    }
   }
 
   // 2D: counter-clockwise where the first uniform is below 1/2, else clockwise.
@@ -151,16 +156,20 @@ class Rotation {
   // 3D: about an axis uniform on the sphere (3.8), or about one of +-x, +-y, +-z.
   void draw(const CounterRandom &random, std::uint64_t cell, Turn<3> &turn) const
   {
-    const auto u = uniforms(random.words(Stream::Rotation, cell));
-    Vector<3> n{};
+    const auto words = random.words(Stream::Rotation, cell);
     if (axes_ == Axes::Coordinate) {
-      const int choice = static_cast<int>(6 * u[0]);
-      n[choice / 2] = choice % 2 ? -1 : 1;
-    } else {
-      const double height = 2 * u[0] - 1;
-      const double equator = std::sqrt(1 - height * height);
-      n = {equator * std::cos(2 * M_PI * u[1]), equator * std::sin(2 * M_PI * u[1]), height};
+      turn = about_coordinates_[static_cast<int>(6 * uniform(words[0]))];
+      return;
     }
+    const double height = 2 * uniform(words[0]) - 1, part = uniform(words[1]);
+    const double equator = std::sqrt(1 - height * height);
+    turn = about({equator * std::cos(2 * M_PI * part), equator * std::sin(2 * M_PI * part), height});
+  }
+
+ private:
+  Turn<3> about(const Vector<3> &n) const
+  {
+    Turn<3> turn;
     const double c = cosine_, s = sine_, rest = 1 - cosine_;
     turn.column[0] = pack(c + rest * n[0] * n[0], rest * n[1] * n[0] + s * n[2],
                           rest * n[2] * n[0] - s * n[1]);
@@ -168,11 +177,12 @@ class Rotation {
                           rest * n[2] * n[1] + s * n[0]);
     turn.column[2] = pack(rest * n[0] * n[2] + s * n[1], rest * n[1] * n[2] - s * n[0],
                           c + rest * n[2] * n[2]);
+    return turn;
   }
 
- private:
   double cosine_, sine_;
   Axes axes_;
+  std::array<Turn<3>, 6> about_coordinates_;    // x, -x, y, -y, z, -z
 };
 
 }    // namespace mpc
