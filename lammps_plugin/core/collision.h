@@ -34,12 +34,25 @@ inline Pack<3> pack(double x, double y, double z)
   return Pack<3>{x, y, z, 0};
 }
 
-// Of the particles of a cell: number of fluid particles, of mass 1; momentum and squares of all.
-template <int D> struct CellSum {
-  Pack<D> momentum{};
-  Pack<2> squares_and_count{};    // of the velocities, weighted by mass
+// Of the particles of a cell: number of fluid particles, of mass 1; momentum of all, and in two
+// dimensions squares of their velocities, weighted by mass.
+template <int D> struct CellSum;
+template <> struct CellSum<2> {
+  Pack<2> momentum{};
+  Pack<2> squares_and_count{};
 
   double count() const { return squares_and_count[1]; }
+  void add(const Vector<2> &v, double squares)
+  {
+    momentum += pack(v[0], v[1]);
+    squares_and_count += pack(squares, 1);
+  }
+};
+template <> struct CellSum<3> {
+  Pack<3> momentum{};    // the fourth counts
+
+  double count() const { return momentum[3]; }
+  void add(const Vector<3> &v, double) { momentum += Pack<3>{v[0], v[1], v[2], 1}; }
 };
 
 // What is in a cell beside fluid.
@@ -49,7 +62,22 @@ struct Guests {
 
 template <int D> struct CellSums {
   Array<CellSum<D>> of;
+  Array<double> squares;   // of the velocities, in three dimensions and if they are wanted
   Array<Guests> guests;    // of each cell, or empty
+
+  void clear()
+  {
+    std::fill(of.begin(), of.end(), CellSum<D>{});
+    std::fill(squares.begin(), squares.end(), 0.0);
+  }
+
+  // Add a fluid particle.
+  void add(int cell, const Vector<D> &v)
+  {
+    const double squares_of_it = square<D>(v);
+    of[cell].add(v, squares_of_it);
+    if (D == 3 && !squares.empty()) squares[cell] += squares_of_it;
+  }
 
   double number(int cell) const
   {
@@ -70,20 +98,31 @@ template <int D> struct CellSums {
     return mean;
   }
 
-  // Kinetic energy of the motion relative to the mean.
+  double square_sum(int cell) const
+  {
+    if constexpr (D == 2)
+      return of[cell].squares_and_count[0];
+    else
+      return squares[cell];
+  }
+
+  // Kinetic energy of the motion relative to the mean; in three dimensions squares are needed.
   double relative_energy(int cell) const
   {
     if (number(cell) < 2) return 0;
     double of_mean = 0;
     for (int a = 0; a < D; ++a) of_mean += of[cell].momentum[a] * of[cell].momentum[a];
-    return 0.5 * std::max(of[cell].squares_and_count[0] - of_mean / mass(cell), 0.0);
+    return 0.5 * std::max(square_sum(cell) - of_mean / mass(cell), 0.0);
   }
 
   // Add a guest.
   void add(int cell, const Vector<D> &v, double mass)
   {
     for (int a = 0; a < D; ++a) of[cell].momentum[a] += mass * v[a];
-    of[cell].squares_and_count[0] += mass * square<D>(v);
+    if constexpr (D == 2)
+      of[cell].squares_and_count[0] += mass * square<D>(v);
+    else if (!squares.empty())
+      squares[cell] += mass * square<D>(v);
     guests[cell].number += 1;
     guests[cell].mass += mass;
   }

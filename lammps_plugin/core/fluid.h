@@ -69,6 +69,13 @@ template <int D, class Real = double> struct Fluid {
       return x[axis][i];
   }
 
+  Vector<D> velocity(int i) const
+  {
+    Vector<D> velocity;
+    for (int a = 0; a < D; ++a) velocity[a] = v[a][i];
+    return velocity;
+  }
+
   void set_position(int axis, int i, double position) { x[axis][i] = kept(axis, position); }
 
   Particle<D> particle(int i) const

@@ -121,13 +121,13 @@ void turn(Fluid<D, float> &fluid, const Array<SingleTurn<D>> &of_cells, int begi
   }
 }
 
-// Adds four particles to the sums of their cells; in three dimensions it counts them beside the
-// momentum, which bring_together() puts right.
+// Adds four particles to the sums of their cells.
 template <int D> class AddFour {
  public:
-  AddFour(const Fluid<D, float> &fluid, CellSums<D> &sums, bool squares)
-    : cell_(fluid.cell.data()), sums_(sums.of.data()), ahead_(fluid.size() - AHEAD_OF_FOUR - 4),
-      squares_(squares)
+  AddFour(const Fluid<D, float> &fluid, CellSums<D> &sums)
+    : cell_(fluid.cell.data()), sums_(sums.of.data()),
+      squares_(sums.squares.empty() ? nullptr : sums.squares.data()),
+      ahead_(fluid.size() - AHEAD_OF_FOUR - 4)
   {
     for (int a = 0; a < D; ++a) v_[a] = fluid.v[a].data();
   }
@@ -146,29 +146,23 @@ template <int D> class AddFour {
     transpose(x, y, z, ones);
     const Four of_particle[4] = {x, y, z, ones};
     for (int k = 0; k < 4; ++k) {
-      auto *sum = sums_ + cell_[first + k];
+      const int cell = cell_[first + k];
       FourDoubles total;
-      std::memcpy(&total, sum, sizeof total);
+      static_assert(sizeof(CellSum<D>) == sizeof total);
+      std::memcpy(&total, sums_ + cell, sizeof total);
       total += __builtin_convertvector(of_particle[k], FourDoubles);
-      std::memcpy(static_cast<void *>(sum), &total, sizeof total);
-      if (D == 3 && squares_) sum->squares_and_count[0] += square[k];
+      std::memcpy(static_cast<void *>(sums_ + cell), &total, sizeof total);
+      if (D == 3 && squares_) squares_[cell] += square[k];
     }
   }
 
  private:
   const std::int32_t *cell_;
   CellSum<D> *sums_;
+  double *squares_;    // or none
   std::array<const float *, D> v_;
   int ahead_;
-  bool squares_;
 };
-
-inline void bring_together(CellSum<2> &) {}
-inline void bring_together(CellSum<3> &sum)
-{
-  sum.squares_and_count[1] += sum.momentum[3];
-  sum.momentum[3] = 0;
-}
 
 // The grid's shift at a place, for rows to be found in whole numbers.
 template <int D> void round_shift(Grid<D> &grid)

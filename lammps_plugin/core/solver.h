@@ -229,13 +229,16 @@ template <int D, class Real = double> class Solver : public AnySolver<D> {
   static constexpr int SORT_INTERVAL = 64;    // collisions, in which a particle moves a few cells
   static constexpr int STRAY = -1, TAKEN = -2;    // instead of a cell
 
+  // Whether a thermostat needs the squares of the velocities.
+  bool scales() const { return method_.thermostat && !method_.thermostat->redraws(); }
+
   bool reflecting() const { return method_.coupling && method_.coupling->after_flight(); }
 
   // All that the coupling does not take, to the end of the interval and into the sums of the cells.
   void move()
   {
     auto *coupling = method_.coupling.get();
-    std::fill(sums_.of.begin(), sums_.of.end(), CellSum<D>{});
+    sums_.clear();
     strays_.clear();
     held_.clear();
     for (int begin = 0; begin < fluid_.size(); begin += BLOCK) {
@@ -259,6 +262,7 @@ template <int D, class Real = double> class Solver : public AnySolver<D> {
     grid_.lower = lower;
     grid_.upper = upper;
     sums_.of.assign(grid_.cells(), {});
+    if (D == 3 && scales()) sums_.squares.assign(grid_.cells(), 0);
     sums_.guests.clear();
     turns_.assign(grid_.cells(), {});
     if constexpr (single) fluid_.places = places_of(grid_);
@@ -386,7 +390,7 @@ template <int D, class Real = double> class Solver : public AnySolver<D> {
     constexpr int line = CACHE_LINE / sizeof(Real);
     if constexpr (single) {
       const auto *cell = fluid_.cell.data();
-      const auto add_four = AddFour<D>(fluid_, sums_, method_.thermostat != nullptr);
+      const auto add_four = AddFour<D>(fluid_, sums_);
       for (int i = begin; i < end; i += 4) {
         if (i % line == 0) prefetch_state(i + BLOCK);    // of the next block
         if (i + 4 <= end && (cell[i] | cell[i + 1] | cell[i + 2] | cell[i + 3]) >= 0)
@@ -414,7 +418,7 @@ template <int D, class Real = double> class Solver : public AnySolver<D> {
         return;
       }
     }
-    add_to(sums_.of[cell], i);
+    sums_.add(cell, fluid_.velocity(i));
   }
 
   // Keep back what has met colloids.
@@ -452,7 +456,7 @@ template <int D, class Real = double> class Solver : public AnySolver<D> {
         strays_.push_back(i);
         leaving.push_back(flight);
       } else {
-        add_to(sums_.of[cell], i);
+        sums_.add(cell, fluid_.velocity(i));
       }
     }
     for (auto &flight : arrived) coupling.reflect_next(flight);
@@ -482,19 +486,6 @@ template <int D, class Real = double> class Solver : public AnySolver<D> {
     return grid_.local(flight.x);
   }
 
-  void add_to(CellSum<D> &sum, int i)
-  {
-    const double x = fluid_.v[0][i], y = fluid_.v[1][i];
-    if constexpr (D == 2) {
-      sum.momentum += pack(x, y);
-      sum.squares_and_count += pack(x * x + y * y, 1);
-    } else {
-      const double z = fluid_.v[2][i];
-      sum.momentum += pack(x, y, z);
-      sum.squares_and_count += pack(x * x + y * y + z * z, 1);
-    }
-  }
-
   // The cell of a stray, if it is this process's after all.
   int find(int i)
   {
@@ -521,7 +512,7 @@ template <int D, class Real = double> class Solver : public AnySolver<D> {
     bring_home<D>(travelling_, grid_, processes_);
     for (const auto &particle : travelling_) {
       fluid_.append(particle, grid_.local(particle.x));
-      add_to(sums_.of[fluid_.cell.back()], fluid_.size() - 1);
+      sums_.add(fluid_.cell.back(), fluid_.velocity(fluid_.size() - 1));
     }
     travelling_.clear();
   }
@@ -572,7 +563,6 @@ template <int D, class Real = double> class Solver : public AnySolver<D> {
     const auto *walls = method_.walls.get();
     auto *thermostat = method_.thermostat.get();
     const auto turn_of = [&](int cell, const std::array<int, D> &rows) {
-      bring_together(sums_.of[cell]);
       const auto number = grid_.number(rows);
       Turn<D> turn;
       method_.rotation.draw(random, number, turn);
@@ -582,7 +572,7 @@ template <int D, class Real = double> class Solver : public AnySolver<D> {
           fix_point<D>(turn, walls->mean_of_cut(cut, sums_, cell, random, number));
       return turn;
     };
-    if (!thermostat || thermostat->redraws()) {
+    if (!scales()) {
       grid_.each_cell([&](int cell, const std::array<int, D> &rows) {
         turns_[cell] = SingleTurn<D>(turn_of(cell, rows));
       });
