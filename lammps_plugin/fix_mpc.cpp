@@ -147,7 +147,11 @@ template <int D> void FixMPC<D>::make_solver(double particles)
   else if (given_.hydro == "bath")
     method.random_solvent = std::make_unique<mpc::BathSolvent<D>>(given_.temperature);
   method.coupling = make_coupling(field, method.walls.get());
-  solver_ = std::make_unique<mpc::Solver<D>>(grid, std::move(method), processes_);
+  method.thermal_speed = std::sqrt(given_.temperature);
+  if (given_.single)
+    solver_ = std::make_unique<mpc::Solver<D, float>>(grid, std::move(method), processes_);
+  else
+    solver_ = std::make_unique<mpc::Solver<D>>(grid, std::move(method), processes_);
   state_ = std::make_unique<MpcState<D>>(lmp, given_, *solver_);
   colloids_.set_coupling(coupling());
 }
@@ -174,7 +178,7 @@ template <int D> void FixMPC<D>::write_restart(FILE *file)
 template <int D> void FixMPC<D>::restart(char *buffer)
 {
   guarded([&] {
-    const auto header = mpc::read_restart_header<D>(buffer, given_.seed);
+    const auto header = mpc::read_restart_header<D>(buffer, given_.seed, given_.single);
     make_solver(static_cast<double>(header.fluid.particles));
     check_processes();
     auto restored = state_->restart(buffer);
@@ -268,10 +272,7 @@ template <int D> void FixMPC<D>::end_of_step()
     if (step % given_.profile_frequency == 0) profile_->write(solver_->particles());
   }
   if (flow_) {
-    if (step % given_.flow.every == 0) {
-      solver_->turn();
-      flow_->look(solver_->fluid(), solver_->grid());
-    }
+    if (step % given_.flow.every == 0) flow_->look(*solver_);
     if (step % given_.flow.frequency == 0) flow_->write(solver_->particles());
   }
   if (dump_) dump();
@@ -282,7 +283,7 @@ template <int D> void FixMPC<D>::dump()
 {
   if (open_ || update->ntimestep % given_.dump.every) return;
   solver_->turn();
-  dump_->write(solver_->fluid());
+  dump_->write(*solver_);
 }
 
 // Take the total momentum from all velocities alike.
@@ -322,8 +323,7 @@ template <int D> void FixMPC<D>::unpack_reverse_comm(int count, int *atoms, doub
 template <int D> const std::vector<mpc::Layer> &FixMPC<D>::layers()
 {
   if (layers_step_ != update->ntimestep) {
-    solver_->turn();
-    layers_ = mpc::layers<D>(solver_->fluid(), solver_->grid(), given_.bins, processes_);
+    layers_ = solver_->layers(given_.bins);
     layers_step_ = update->ntimestep;
   }
   return layers_;

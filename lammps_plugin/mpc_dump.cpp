@@ -28,11 +28,13 @@ template <int D> MpcDump<D>::~MpcDump()
 
 // The particles to write, of all processes, on the first.
 template <int D>
-std::vector<Particle<D>> MpcDump<D>::chosen(const mpc::Fluid<D> &fluid) const
+std::vector<Particle<D>> MpcDump<D>::chosen(const mpc::AnySolver<D> &solver) const
 {
   std::vector<Particle<D>> mine;
-  for (int i = 0; i < fluid.size(); ++i)
-    if (fluid.id[i] % given_.one_in == 0) mine.push_back(fluid.particle(i));
+  for (int i = 0; i < solver.size(); ++i) {
+    const auto particle = solver.particle(i);
+    if (static_cast<bigint>(particle.id) % given_.one_in == 0) mine.push_back(particle);
+  }
   if (comm->nprocs == 1) return mine;
   constexpr int record = sizeof(Particle<D>) / sizeof(double);
   const int size = static_cast<int>(mine.size()) * record;
@@ -45,9 +47,9 @@ std::vector<Particle<D>> MpcDump<D>::chosen(const mpc::Fluid<D> &fluid) const
   return all;
 }
 
-template <int D> void MpcDump<D>::write(const mpc::Fluid<D> &fluid)
+template <int D> void MpcDump<D>::write(const mpc::AnySolver<D> &solver)
 {
-  auto particles = chosen(fluid);
+  auto particles = chosen(solver);
   if (comm->me != 0) return;
   std::sort(particles.begin(), particles.end(),
             [](const auto &a, const auto &b) { return a.id < b.id; });

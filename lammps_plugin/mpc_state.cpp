@@ -41,7 +41,7 @@ FILE *open_fluid(Error &error, const std::string &name, mpc::FluidHeader &header
 }    // namespace
 
 template <int D>
-MpcState<D>::MpcState(LAMMPS *lmp, const MpcArguments<D> &given, mpc::Solver<D> &solver) :
+MpcState<D>::MpcState(LAMMPS *lmp, const MpcArguments<D> &given, mpc::AnySolver<D> &solver) :
     Pointers(lmp), given_(given), solver_(solver)
 {
 }
@@ -160,14 +160,14 @@ template <int D> template <class Visit> void MpcState<D>::gather(const Visit &vi
   std::vector<Particle<D>> chunk;
   for (int p = 0; p < comm->nprocs; ++p) {
     if (comm->me != 0 && comm->me != p) continue;
-    int left = solver_.fluid().size();
+    int left = solver_.size();
     if (p > 0 && comm->me == p) MPI_Send(&left, 1, MPI_INT, 0, 0, world);
     if (p > 0 && comm->me == 0) MPI_Recv(&left, 1, MPI_INT, p, 0, world, MPI_STATUS_IGNORE);
     for (int done = 0; left > 0;) {
       chunk.resize(std::min(left, CHUNK));
       const int count = static_cast<int>(chunk.size());
       if (comm->me == p)
-        for (int i = 0; i < count; ++i) chunk[i] = solver_.fluid().particle(done + i);
+        for (int i = 0; i < count; ++i) chunk[i] = solver_.particle(done + i);
       if (p > 0 && comm->me == p) MPI_Send(chunk.data(), count * record, MPI_DOUBLE, 0, 0, world);
       if (p > 0 && comm->me == 0)
         MPI_Recv(chunk.data(), count * record, MPI_DOUBLE, p, 0, world, MPI_STATUS_IGNORE);
@@ -223,7 +223,7 @@ void MpcState<D>::write_restart(FILE *file, const std::vector<Pull<D>> &pulls,
         D, static_cast<std::int64_t>(solver_.particles()),
         static_cast<std::int64_t>(solver_.collisions()), comm->nprocs,
         static_cast<std::int64_t>(pulls.size()), static_cast<std::int64_t>(average.size()),
-        given_.seed);
+        given_.seed, given_.single);
     const int size = static_cast<int>(bytes);
     std::fwrite(&size, sizeof size, 1, file);
     std::fwrite(&header, sizeof header, 1, file);
@@ -243,11 +243,11 @@ void MpcState<D>::write_restart(FILE *file, const std::vector<Pull<D>> &pulls,
 template <int D>
 typename MpcState<D>::Restored MpcState<D>::restart(const char *buffer)
 {
-  const auto header = mpc::read_restart_header<D>(buffer, given_.seed);
+  const auto header = mpc::read_restart_header<D>(buffer, given_.seed, given_.single);
   solver_.reset(header.fluid.collisions, lower(), upper());
   Restored restored;
   mpc::read_restart<D, Pull<D>>(
-      buffer, given_.seed,
+      buffer, given_.seed, given_.single,
       [&](const Pull<D> &pull) {
         if (header.processes == comm->nprocs) restored.pulls.push_back(pull);
       },

@@ -17,7 +17,7 @@ namespace LAMMPS_NS {
 
 template <int D> class MpcState : protected Pointers {
  public:
-  MpcState(LAMMPS *, const MpcArguments<D> &, mpc::Solver<D> &);
+  MpcState(LAMMPS *, const MpcArguments<D> &, mpc::AnySolver<D> &);
 
   // The cells of this process's sub-domain: lower <= cell < upper.
   std::array<int, D> lower() const;
@@ -46,7 +46,7 @@ template <int D> class MpcState : protected Pointers {
   template <class Visit> void gather(const Visit &);
 
   const MpcArguments<D> &given_;
-  mpc::Solver<D> &solver_;
+  mpc::AnySolver<D> &solver_;
 };
 
 }    // namespace LAMMPS_NS

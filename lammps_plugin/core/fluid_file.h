@@ -14,6 +14,7 @@ namespace mpc {
 
 constexpr char FLUID_FILE[8] = {'m', 'p', 'c', 'f', 'l', 'u', 'i', 'd'};
 constexpr char RESTART[8] = {'m', 'p', 'c', 's', 't', 'a', 't', 'e'};
+constexpr char RESTART_IN_SINGLE[8] = {'m', 'p', 'c', 's', 't', 'a', 't', '4'};
 
 // By words of 8 bytes, each step one-to-one: any word that changes changes it.
 class Checksum {
@@ -52,21 +53,26 @@ struct RestartHeader {
 
 inline RestartHeader restart_header(int dimension, std::int64_t particles, std::int64_t collisions,
                                     std::int64_t processes, std::int64_t pulls,
-                                    std::int64_t averages, std::uint64_t seed)
+                                    std::int64_t averages, std::uint64_t seed, bool single)
 {
   RestartHeader header{{{}, dimension, particles, collisions}, processes, pulls, averages, seed, 0};
-  std::memcpy(header.fluid.magic, RESTART, sizeof RESTART);
+  std::memcpy(header.fluid.magic, single ? RESTART_IN_SINGLE : RESTART, sizeof RESTART);
   header.checksum = header.expected();
   return header;
 }
 
-// The header of a restart of D dimensions and that seed; the buffer holds at least one.
-template <int D> RestartHeader read_restart_header(const char *buffer, std::uint64_t seed)
+// The header of a restart of D dimensions, that seed and precision; the buffer holds at least one.
+template <int D>
+RestartHeader read_restart_header(const char *buffer, std::uint64_t seed, bool single)
 {
   RestartHeader header;
   std::memcpy(&header, buffer, sizeof header);
-  if (std::memcmp(header.fluid.magic, RESTART, sizeof RESTART))
+  const bool of_single = !std::memcmp(header.fluid.magic, RESTART_IN_SINGLE, sizeof RESTART);
+  if (!of_single && std::memcmp(header.fluid.magic, RESTART, sizeof RESTART))
     throw Fault("restart: not of this version of fix mpc");
+  if (of_single != single)
+    throw Fault(std::string("restart: of precision ") + (of_single ? "single" : "double") + ", not " +
+                (single ? "single" : "double") + "; fix_modify save and load change it");
   if (header.checksum != header.expected()) throw Fault("restart: damaged");
   if (header.fluid.dimension != D) throw Fault("restart: of another dimension");
   if (header.seed != seed)
@@ -78,10 +84,10 @@ template <int D> RestartHeader read_restart_header(const char *buffer, std::uint
 // Visit the pulls, the numbers of an average, then the particles of a restart, once all are known to
 // be what was written.
 template <int D, class Pull, class OnPull, class OnAverage, class OnParticle>
-RestartHeader read_restart(const char *buffer, std::uint64_t seed, const OnPull &on_pull,
+RestartHeader read_restart(const char *buffer, std::uint64_t seed, bool single, const OnPull &on_pull,
                            const OnAverage &on_average, const OnParticle &on_particle)
 {
-  const auto header = read_restart_header<D>(buffer, seed);
+  const auto header = read_restart_header<D>(buffer, seed, single);
   const char *next = buffer + sizeof header;
   const std::size_t bytes =
       header.pulls * sizeof(Pull) + header.averages * sizeof(double) +
