@@ -67,10 +67,12 @@ template <int D> void FixMPC<D>::init()
     const bool loading = !given_.load_file.empty();
     make_solver(loading ? MpcState<D>::particles_in(*error, given_.load_file) : given_.particles);
     check_processes();
-    if (loading)
-      state_->load(given_.load_file);
-    else
-      state_->create(colloids_.all(), coupling());
+    guarded([&] {
+      if (loading)
+        state_->load(given_.load_file);
+      else
+        state_->create(colloids_.all(), coupling());
+    });
     warn_of_density<D>(lmp, given_.density, solver_->particles(), given_.edge, colloids_.all(),
                        coupling());
   }
@@ -238,8 +240,10 @@ template <int D> void FixMPC<D>::setup(int)
 template <int D> void FixMPC<D>::initial_integrate(int)
 {
   if (!open_) {
-    if (comm->nprocs > 1) solver_->redistribute(state_->lower(), state_->upper());
-    guarded([&] { solver_->begin_interval(colloids_.seen(), colloids_.speed()); });
+    guarded([&] {
+      if (comm->nprocs > 1) solver_->redistribute(state_->lower(), state_->upper());
+      solver_->begin_interval(colloids_.seen(), colloids_.speed());
+    });
     open_ = true;
   }
 }

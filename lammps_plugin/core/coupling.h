@@ -59,7 +59,6 @@ template <int D> class Coupling {
   // At every MD step. Take from the particles begin ... end - 1; their indices join taken(). The
   // fluid is in double or in single precision, if that can be.
   virtual bool every_step() const { return false; }
-  virtual bool in_single() const { return false; }
   virtual void take(const Fluid<D> &, int /*begin*/, int /*end*/) {}
   virtual void take(const Fluid<D, float> &, int /*begin*/, int /*end*/) {}
   const std::vector<int> &taken() const { return taken_; }

@@ -63,10 +63,10 @@ template <int D, class Real = double> struct Fluid {
 
   double position(int axis, int i) const
   {
-    if constexpr (single)
-      return places[axis].middle + places[axis].length * x[axis][i];
-    else
-      return x[axis][i];
+    if constexpr (!single) return x[axis][i];
+    const auto &of = places[axis];
+    const double position = of.middle + of.length * x[axis][i];
+    return position + (position < 0 ? of.period : 0) - (position >= of.period ? of.period : 0);
   }
 
   Vector<D> velocity(int i) const

@@ -52,7 +52,6 @@ template <int D> class ForceCoupling : public Coupling<D> {
     taken_.clear();
   }
 
-  bool in_single() const override { return true; }
   void take(const Fluid<D> &fluid, int begin, int end) override { take_from(fluid, begin, end); }
   void take(const Fluid<D, float> &fluid, int begin, int end) override
   {
