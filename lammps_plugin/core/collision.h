@@ -184,12 +184,17 @@ class Rotation {
     }
   }
 
-  // 2D: counter-clockwise where the first uniform is below 1/2, else clockwise.
-  void draw(const CounterRandom &random, std::uint64_t cell, Turn<2> &turn) const
+  double cosine() const { return cosine_; }
+  double sine() const { return sine_; }
+
+  // 2D: counter-clockwise where the first uniform is below 1/2, else clockwise. Returns that uniform.
+  double draw(const CounterRandom &random, std::uint64_t cell, Turn<2> &turn) const
   {
-    const double sine = uniform(random.words(Stream::Rotation, cell)[0]) < 0.5 ? sine_ : -sine_;
+    const double u = uniform(random.words(Stream::Rotation, cell)[0]);
+    const double sine = u < 0.5 ? sine_ : -sine_;
     turn.column[0] = pack(cosine_, sine);
     turn.column[1] = pack(-sine, cosine_);
+    return u;
   }
 
   // 3D: about an axis uniform on the sphere (3.8), or about one of +-x, +-y, +-z.

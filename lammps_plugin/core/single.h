@@ -57,6 +57,43 @@ template <int D> struct SingleTurn {
   }
 };
 
+// One of the two single numbers next to a double, so that they are it on average.
+class Dithered {
+ public:
+  explicit Dithered(double value)
+    : near_(static_cast<float>(value)), next_(std::nextafter(near_, value > near_ ? 2.0f : -2.0f)),
+      share_((value - near_) / (static_cast<double>(next_) - near_))
+  {
+  }
+
+  float at(double uniform) const { return uniform < share_ ? next_ : near_; }
+
+ private:
+  float near_, next_;
+  double share_;
+};
+
+// Cosine and sine of two dimensions. The nearest would multiply all energies by the same number, up
+// to 3e-8 from 1, at each collision.
+class DitheredRotation {
+ public:
+  explicit DitheredRotation(const Rotation &rotation)
+    : cosine_(rotation.cosine()), sine_(rotation.sine())
+  {
+  }
+
+  // For what is left of the uniform that chose the side.
+  void set(SingleTurn<2> &turn, double uniform) const
+  {
+    const double left = 2 * uniform - std::floor(2 * uniform);
+    turn.row[0][2] = cosine_.at(left);
+    turn.row[0][3] = uniform < 0.5 ? sine_.at(left) : -sine_.at(left);
+  }
+
+ private:
+  Dithered cosine_, sine_;
+};
+
 // Of four particles.
 inline void apply(const SingleTurn<2> *const (&of)[4], Four (&v)[2])
 {

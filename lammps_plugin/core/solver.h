@@ -335,16 +335,15 @@ template <int D, class Real = double> class Solver : public AnySolver<D> {
         Vector<D> kick;
         for (int a = 0; a < D; ++a)
           kick[a] = dithered(method_.interval * method_.field[a], method_.thermal_speed, collisions_);
-        mpc::fly<D>(fluid_, grid_, method_.field, kick, method_.interval, method_.walls.get(), begin, end);
-        return;
+        mpc::fly<D>(fluid_, grid_, method_.field, kick, method_.interval, method_.walls.get(), begin,
+                    end);
       } else {
-      std::array<double *, D> x, v;
-      for (int a = 0; a < D; ++a) {
-        x[a] = fluid_.x[a].data();
-        v[a] = fluid_.v[a].data();
-      }
-      stream<D>(x, v, Field<D>{method_.field}, method_.interval, method_.walls.get(), begin,
-                end);
+        std::array<double *, D> x, v;
+        for (int a = 0; a < D; ++a) {
+          x[a] = fluid_.x[a].data();
+          v[a] = fluid_.v[a].data();
+        }
+        stream<D>(x, v, Field<D>{method_.field}, method_.interval, method_.walls.get(), begin, end);
       }
     } catch (const TooManyBounces &bounces) {
       throw bounces.fault(fluid_.id[bounces.index]);
@@ -355,9 +354,14 @@ template <int D, class Real = double> class Solver : public AnySolver<D> {
   // box, or is nowhere, becomes a stray; sum() looks closer.
   void sort(int begin, int end)
   {
-    if constexpr (single) {
+    if constexpr (single)
       find_cells(fluid_, grid_, method_.interval, begin, end, STRAY);
-    } else {
+    else
+      sort_in_double(begin, end);
+  }
+
+  void sort_in_double(int begin, int end)
+  {
     std::int32_t *__restrict cell = fluid_.cell.data();
     std::int32_t stride = 1;
     for (int a = 0; a < D; ++a) {
@@ -381,7 +385,6 @@ template <int D, class Real = double> class Solver : public AnySolver<D> {
         cell[i] = mine & (before >= 0) ? before + stride * row : STRAY;
       }
       stride *= extent;
-    }
     }
   }
 
@@ -562,25 +565,33 @@ template <int D, class Real = double> class Solver : public AnySolver<D> {
   {
     const auto *walls = method_.walls.get();
     auto *thermostat = method_.thermostat.get();
-    const auto turn_of = [&](int cell, const std::array<int, D> &rows) {
-      const auto number = grid_.number(rows);
-      Turn<D> turn;
-      method_.rotation.draw(random, number, turn);
+    const auto fix = [&](int cell, const std::array<int, D> &rows, Turn<D> &turn) {
       fix_point<D>(turn, sums_.mean(cell));
-      if (walls)
-        if (const auto cut = walls->cutting(grid_, rows); cut.count > 0)
-          fix_point<D>(turn, walls->mean_of_cut(cut, sums_, cell, random, number));
-      return turn;
+      if (!walls) return;
+      if (const auto cut = walls->cutting(grid_, rows); cut.count > 0)
+        fix_point<D>(turn, walls->mean_of_cut(cut, sums_, cell, random, grid_.number(rows)));
     };
     if (!scales()) {
+      const DitheredRotation dithered(method_.rotation);
       grid_.each_cell([&](int cell, const std::array<int, D> &rows) {
-        turns_[cell] = SingleTurn<D>(turn_of(cell, rows));
+        Turn<D> turn;
+        if constexpr (D == 2) {
+          const double uniform = method_.rotation.draw(random, grid_.number(rows), turn);
+          fix(cell, rows, turn);
+          turns_[cell] = SingleTurn<D>(turn);
+          dithered.set(turns_[cell], uniform);
+        } else {
+          method_.rotation.draw(random, grid_.number(rows), turn);
+          fix(cell, rows, turn);
+          turns_[cell] = SingleTurn<D>(turn);
+        }
       });
       return;
     }
     wide_turns_.resize(grid_.cells());
     grid_.each_cell([&](int cell, const std::array<int, D> &rows) {
-      wide_turns_[cell] = turn_of(cell, rows);
+      method_.rotation.draw(random, grid_.number(rows), wide_turns_[cell]);
+      fix(cell, rows, wide_turns_[cell]);
     });
     Collision<D> collision{grid_, random, sums_, wide_turns_, processes_};
     thermostat->scale(collision);

@@ -29,6 +29,7 @@ from srd_driver.reference.walls import cut_cells, mean_with_virtual_particles
 
 PLACES = 2.0**20  # in a cell, of edge a0 = 1
 GOLDEN = 0.6180339887498949
+UNSCALED = ("none", "andersen")  # thermostats that leave the cells' maps alone
 Single = NDArray[np.float32]
 
 
@@ -100,8 +101,9 @@ class SingleEngine(ReferenceEngine):
             cut = cut_cells(cells, shift, self._width)
             mean = mean_with_virtual_particles(velocities, cells, cut, solvent.density, random)
         matrices = self._matrices(cells, random)
-        offsets = mean - np.einsum("abc,bc->ac", matrices, mean)
-        if solvent.thermostat not in ("none", "andersen"):
+        exact = self._matrices(cells, random, exact=True)
+        offsets = mean - np.einsum("abc,bc->ac", exact, mean)
+        if solvent.thermostat not in UNSCALED:
             factors, centre = self._factors(velocities, cells, matrices, offsets, random)
             matrices, offsets = matrices * factors, offsets * factors + (1 - factors) * centre
         _apply(velocities, cells, matrices, offsets)
@@ -109,12 +111,20 @@ class SingleEngine(ReferenceEngine):
             thermostats.andersen(velocities, solvent.collision_time, random)
             velocities[:] = velocities.astype(np.float32)
 
-    def _matrices(self, cells: Cells, random: CounterRandom) -> Array:
-        """The rotation of each cell (d, d, cells)."""
+    def _matrices(self, cells: Cells, random: CounterRandom, exact: bool = False) -> Array:
+        """The rotation of each cell (d, d, cells), in two dimensions dithered unless exact.
+
+        The single numbers nearest to cosine and sine would multiply all energies by the same
+        number, up to 3e-8 from 1, at each collision.
+        """
         dimensions, alpha = self._box.dimensions, math.radians(self._solvent.angle)
         if dimensions == 2:
-            sine = math.sin(alpha) * signs(random, cells.count)
-            cosine = np.full(cells.count, math.cos(alpha))
+            sign = signs(random, cells.count)
+            sine, cosine = (np.full(cells.count, f(alpha)) for f in (math.sin, math.cos))
+            if self._solvent.thermostat in UNSCALED and not exact:
+                left = (2 * random.uniform(Stream.ROTATION, cells.count)[0]) % 1
+                sine, cosine = _dithered(math.sin(alpha), left), _dithered(math.cos(alpha), left)
+            sine = sine * sign
             return np.array([[cosine, -sine], [sine, cosine]])
         draw = coordinate_axes if self._solvent.rotation == "coordinate_axes" else random_axes
         axes = draw(random, cells.count)
@@ -165,3 +175,11 @@ def _apply(velocities: Array, cells: Cells, matrices: Array, offsets: Array) -> 
         if len(v) == 3:
             turned += matrix[a, 2] * v[2]
         velocities[a] = offset[a] + turned
+
+
+def _dithered(value: float, uniform: Array) -> Array:
+    """One of the two single numbers next to a value for each uniform: the value on average."""
+    near = np.float32(value)
+    following = np.nextafter(near, np.float32(2.0 if value > near else -2.0))
+    share = (value - float(near)) / (float(following) - float(near))
+    return np.where(uniform < share, float(following), float(near))
