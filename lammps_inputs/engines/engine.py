@@ -103,6 +103,12 @@ class Engine(ABC):
             if drive.balanced:
                 yield f"{drive.variable} of {drive.target}: engine {self.name} cannot balance it"
 
+    def no_random_solvent_in_single(self, system: System) -> Iterator[str]:
+        """A line for a random solvent in single precision."""
+        fluid = system.solvent
+        if fluid and fluid.precision == "single" and fluid.hydrodynamics != "on":
+            yield f"precision = 'single': needs hydrodynamics = 'on', not {fluid.hydrodynamics!r}"
+
     def needs_known_tables(self, system: System, known: Collection[str]) -> Iterator[str]:
         """A line for each table with a column that the engine does not tell."""
         for output in system.outputs:

@@ -22,7 +22,7 @@ from srd_driver.reference.collision import (
     signs,
 )
 from srd_driver.reference.colloids import ColloidForces
-from srd_driver.reference.counter_random import CounterRandom
+from srd_driver.reference.counter_random import CounterRandom, Stream
 from srd_driver.reference.engine import ReferenceEngine
 from srd_driver.reference.streaming import bounce_back
 from srd_driver.reference.walls import cut_cells, mean_with_virtual_particles
@@ -30,7 +30,6 @@ from srd_driver.reference.walls import cut_cells, mean_with_virtual_particles
 PLACES = 2.0**20  # in a cell, of edge a0 = 1
 GOLDEN = 0.6180339887498949
 UNSCALED = ("none", "andersen")  # thermostats that leave the cells' maps alone
-Single = NDArray[np.float32]
 
 
 class SingleEngine(ReferenceEngine):
@@ -168,8 +167,8 @@ class SingleEngine(ReferenceEngine):
 def _apply(velocities: Array, cells: Cells, matrices: Array, offsets: Array) -> None:
     """v becomes offset + matrix v, each in single precision, in place."""
     v = velocities.astype(np.float32)
-    matrix: Single = cells.of_particles(matrices.astype(np.float32))
-    offset: Single = cells.of_particles(offsets.astype(np.float32))
+    matrix = cells.of_particles(matrices.astype(np.float32))
+    offset = cells.of_particles(offsets.astype(np.float32))
     for a in range(len(v)):
         turned = matrix[a, 0] * v[0] + matrix[a, 1] * v[1]
         if len(v) == 3:

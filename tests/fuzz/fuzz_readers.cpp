@@ -52,7 +52,7 @@ Bytes fluid_file(const std::vector<Particle<D>> &particles)
 Bytes restart(const std::vector<Particle<D>> &particles, int pulls, int averages)
 {
   Bytes bytes, records;
-  append(bytes, restart_header(D, particles.size(), 3, 1, pulls, averages, SEED));
+  append(bytes, restart_header(D, particles.size(), 3, 1, pulls, averages, SEED, false));
   for (int n = 0; n < pulls; ++n) append(records, Pull{0, 1.0 * n, {1, 2}, {3, 4}});
   for (int n = 0; n < averages; ++n) append(records, 1.5 * n);
   for (const auto &particle : particles) append(records, particle);

@@ -1,6 +1,5 @@
 """Fluids as fix mpc saves them, and short runs that end by saving."""
 
-import re
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Protocol
@@ -73,21 +72,12 @@ def run_mpc(
     ranks: int = 1,
     end: str = "",
     start: Start | None = None,
-    options: str = "",
 ) -> State:
-    """The state after so many collisions of a deck for fix mpc, run by plain `lmp`.
-
-    Options are appended to the fix.
-    """
+    """The state after so many collisions of a deck for fix mpc, run by plain `lmp`."""
     folder.mkdir(exist_ok=True)
     write_deck(scene, folder, "mpc")
     if start:
         (folder / "in.lammps").write_text(script(scene, "mpc", start))
-    if options:
-        deck = (folder / "in.lammps").read_text()
-        (folder / "in.lammps").write_text(
-            re.sub(r"^(fix solvent .*)$", rf"\1 {options}", deck, flags=re.MULTILINE)
-        )
     with (folder / "in.lammps").open("a") as deck:
         deck.write("fix_modify solvent save end.fluid\n")
         columns = " ".join(("id", *AXES[: scene.system.box.dimensions]))
