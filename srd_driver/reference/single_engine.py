@@ -8,7 +8,6 @@ the map v -> offset + matrix v of the cell. Arrays hold the components first, (d
 import math
 
 import numpy as np
-from numpy.typing import NDArray
 
 from lammps_inputs import InitialState, Scene, initial_state
 from lammps_inputs.system import Array

@@ -118,7 +118,7 @@ bool read(const Bytes &bytes, std::vector<Particle<D>> &particles)
   try {
     const auto memory = exactly(bytes);
     read_restart<D, Pull>(
-        memory.get(), SEED, [](const Pull &) {}, [](double) {},
+        memory.get(), SEED, false, [](const Pull &) {}, [](double) {},
         [&](const Particle<D> &particle) { particles.push_back(particle); });
     return false;
   } catch (const Fault &) {
