@@ -78,7 +78,8 @@ def test_a_restart_goes_on_to_the_last_bit_and_tells_its_precision(
     start = Start(step, "half.restart")
     end = run_mpc(scene, COLLISIONS, parts, command, start=start)
     assert largest_difference(end, whole, scene) == 0
-    double = scene.model_copy(update={"precision": "double"})
+    name, fields = NAMED["colloids"]
+    double = make_scene(name, **fields)
     with pytest.raises(AssertionError, match="restart: of precision single, not double"):
         run_mpc(double, COLLISIONS, parts, command, start=start)
 
