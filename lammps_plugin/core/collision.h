@@ -62,8 +62,8 @@ struct Guests {
 
 template <int D> struct CellSums {
   Array<CellSum<D>> of;
-  Array<double> squares;   // of the velocities, in three dimensions and if they are wanted
-  Array<Guests> guests;    // of each cell, or empty
+  Array<Guests> guests;       // of each cell, or empty
+  Array<double> squares{};    // of the velocities, in three dimensions and if they are wanted
 
   void clear()
   {
