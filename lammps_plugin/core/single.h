@@ -239,10 +239,12 @@ inline double dithered(double kick, double thermal_speed, std::uint64_t interval
   return kick + digit * (part - 0.5);
 }
 
-// Whole places, the nearest.
+// Whole places, the nearest; none for what is too far or not a number, which find_cells() tells.
 inline std::int32_t rounded(float places)
 {
-  return static_cast<std::int32_t>(places + std::copysign(0.5f, places));
+  constexpr float most = LONGEST_FLIGHT * PLACES;
+  const float near = std::abs(places) < most ? places : 0.0f;
+  return static_cast<std::int32_t>(near + std::copysign(0.5f, near));
 }
 
 // Move particles begin ... end - 1 to the end of the interval as stream(), to the nearest places.
