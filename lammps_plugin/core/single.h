@@ -315,14 +315,15 @@ void find_cells(Fluid<D, float> &fluid, const Grid<D> &grid, double time, int be
     const float *__restrict v = fluid.v[a].data();
     const std::uint32_t rows = grid.extent(a);
     const bool whole = grid.periodic[a] && grid.extent(a) == grid.shape[a];
-    const auto size = static_cast<std::int32_t>(rows << PLACE_BITS);
-    const std::int32_t low = -static_cast<std::int32_t>(rows << (PLACE_BITS - 1)), high = low + size;
+    const std::uint32_t size = rows << PLACE_BITS;
+    const auto high = static_cast<std::int32_t>(size / 2), low = -high;
     const auto shift = static_cast<std::uint32_t>(grid.shift[a] * PLACES);
     for (int i = begin; i < end; ++i) {
       std::int32_t at = x[i];
       if (whole) {
-        at = at < low ? at + size : at;
-        at = at >= high ? at - size : at;
+        const auto places = static_cast<std::uint32_t>(at);
+        at = at < low ? static_cast<std::int32_t>(places + size)
+            : at >= high ? static_cast<std::int32_t>(places - size) : at;
         x[i] = at;
       }
       std::uint32_t row = (static_cast<std::uint32_t>(at) - low + shift) >> PLACE_BITS;
