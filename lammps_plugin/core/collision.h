@@ -36,7 +36,12 @@ inline Pack<3> pack(double x, double y, double z)
 
 // Of the particles of a cell: number of fluid particles, of mass 1; momentum of all, and in two
 // dimensions squares of their velocities, weighted by mass.
-template <int D> struct CellSum;
+template <int D> struct CellSum {
+  Pack<D> momentum{};    // the fourth counts
+
+  double count() const { return momentum[3]; }
+  void add(const Vector<D> &v, double) { momentum += Pack<D>{v[0], v[1], v[2], 1}; }
+};
 template <> struct CellSum<2> {
   Pack<2> momentum{};
   Pack<2> squares_and_count{};
@@ -47,12 +52,6 @@ template <> struct CellSum<2> {
     momentum += pack(v[0], v[1]);
     squares_and_count += pack(squares, 1);
   }
-};
-template <> struct CellSum<3> {
-  Pack<3> momentum{};    // the fourth counts
-
-  double count() const { return momentum[3]; }
-  void add(const Vector<3> &v, double) { momentum += Pack<3>{v[0], v[1], v[2], 1}; }
 };
 
 // What is in a cell beside fluid.

@@ -692,7 +692,7 @@ template <int D> void single_precision_follows_double(bool walls)
       largest = std::max(largest, std::abs(one.v[a] - other.v[a]));
     }
   }
-  CHECK(largest > 1e-8 && largest < 3e-5);
+  CHECK(largest > 1e-8 && largest < 1e-4);    // 5e-5 with walls; another random number: 0.1
 }
 
 // However little a field gives at a time, it gives all of it: 1e-8 in each of 3000 intervals, where
