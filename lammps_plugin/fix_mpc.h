@@ -5,8 +5,6 @@
 
 #include "fix.h"
 
-#include "core/moments.h"
-#include "core/profile.h"
 #include "core/solver.h"
 #include "mpc_arguments.h"
 #include "mpc_colloids.h"
@@ -65,7 +63,7 @@ template <int D> class FixMPC : public Fix {
   std::unique_ptr<MpcProfile> profile_;    // or none
   std::unique_ptr<MpcFlow<D>> flow_;       // or none
   std::unique_ptr<MpcDump<D>> dump_;       // or none
-  std::unique_ptr<mpc::Solver<D>> solver_;
+  std::unique_ptr<mpc::AnySolver<D>> solver_;
   std::unique_ptr<MpcState<D>> state_;
   double interval_ = 0;
   bool open_ = false;        // within an interval

@@ -92,7 +92,7 @@ template <int D> class ParticleFile {
 }    // namespace
 
 template <int D>
-MpcState<D>::MpcState(LAMMPS *lmp, const MpcArguments<D> &given, mpc::Solver<D> &solver,
+MpcState<D>::MpcState(LAMMPS *lmp, const MpcArguments<D> &given, mpc::AnySolver<D> &solver,
                       MpiProcesses &processes) :
     Pointers(lmp), given_(given), solver_(solver), processes_(processes)
 {
@@ -306,14 +306,14 @@ template <int D> template <class Visit> void MpcState<D>::gather(const Visit &vi
   std::vector<Particle<D>> chunk;
   for (int p = 0; p < comm->nprocs; ++p) {
     if (comm->me != 0 && comm->me != p) continue;
-    int left = solver_.fluid().size();
+    int left = solver_.size();
     if (p > 0 && comm->me == p) MPI_Send(&left, 1, MPI_INT, 0, 0, world);
     if (p > 0 && comm->me == 0) MPI_Recv(&left, 1, MPI_INT, p, 0, world, MPI_STATUS_IGNORE);
     for (int done = 0; left > 0;) {
       chunk.resize(std::min(left, CHUNK));
       const int count = static_cast<int>(chunk.size());
       if (comm->me == p)
-        for (int i = 0; i < count; ++i) chunk[i] = solver_.fluid().particle(done + i);
+        for (int i = 0; i < count; ++i) chunk[i] = solver_.particle(done + i);
       if (p > 0 && comm->me == p) MPI_Send(chunk.data(), count * record, MPI_DOUBLE, 0, 0, world);
       if (p > 0 && comm->me == 0)
         MPI_Recv(chunk.data(), count * record, MPI_DOUBLE, p, 0, world, MPI_STATUS_IGNORE);
@@ -351,8 +351,7 @@ std::uint64_t MpcState<D>::write(const std::string &name, const char *why, const
   }
   require(written);
 
-  const auto &fluid = solver_.fluid();
-  const std::int64_t count = fluid.size();
+  const std::int64_t count = solver_.size();
   std::int64_t place = 0;
   MPI_Exscan(&count, &place, 1, MPI_INT64_T, MPI_SUM, world);
   ParticleFile<D> file(name, "r+b");
@@ -361,7 +360,7 @@ std::uint64_t MpcState<D>::write(const std::string &name, const char *why, const
   for (int i = 0; i < count && written; place += chunk.size()) {
     chunk.clear();
     for (; i < count && chunk.size() < CHUNK; ++i) {
-      chunk.push_back(fluid.particle(i));
+      chunk.push_back(solver_.particle(i));
       for (int a = 0; a < D; ++a) chunk.back().x[a] += origin[a];
     }
     sum += mpc::checksum<D>(chunk.data(), chunk.size(), place);
@@ -397,7 +396,7 @@ void MpcState<D>::write_restart(FILE *file, const std::vector<Pull<D>> &pulls,
   };
   if (comm->me == 0) {
     const auto header = mpc::restart_header(
-        apart, D, static_cast<std::int64_t>(solver_.particles()),
+        apart, given_.single, D, static_cast<std::int64_t>(solver_.particles()),
         static_cast<std::int64_t>(solver_.collisions()), comm->nprocs,
         static_cast<std::int64_t>(pulls.size()), static_cast<std::int64_t>(average.size()),
         given_.seed);
@@ -435,11 +434,11 @@ void MpcState<D>::name_beside(FILE *restart, char (&name)[sizeof mpc::Apart::fil
 template <int D>
 typename MpcState<D>::Restored MpcState<D>::restart(const char *buffer)
 {
-  const auto header = mpc::read_restart_header<D>(buffer, given_.seed);
+  const auto header = mpc::read_restart_header<D>(buffer, given_.seed, given_.single);
   solver_.reset(header.fluid.collisions, lower(), upper());
   Restored restored;
   mpc::read_restart<D, Pull<D>>(
-      buffer, given_.seed,
+      buffer, given_.seed, given_.single,
       [&](const Pull<D> &pull) {
         if (header.processes == comm->nprocs) restored.pulls.push_back(pull);
       },

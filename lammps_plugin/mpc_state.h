@@ -20,7 +20,7 @@ namespace LAMMPS_NS {
 
 template <int D> class MpcState : protected Pointers {
  public:
-  MpcState(LAMMPS *, const MpcArguments<D> &, mpc::Solver<D> &, MpiProcesses &);
+  MpcState(LAMMPS *, const MpcArguments<D> &, mpc::AnySolver<D> &, MpiProcesses &);
 
   // The cells of this process's sub-domain: lower <= cell < upper.
   std::array<int, D> lower() const;
@@ -60,7 +60,7 @@ template <int D> class MpcState : protected Pointers {
   void read_apart(const mpc::FluidHeader &, const mpc::Apart &);
 
   const MpcArguments<D> &given_;
-  mpc::Solver<D> &solver_;
+  mpc::AnySolver<D> &solver_;
   MpiProcesses &processes_;
 };
 

@@ -73,14 +73,14 @@ template <int D> class NearFluid {
     cells_.finish();
   }
 
-  void take(const Fluid<D> &fluid, int begin, int end)
+  template <class Real> void take(const Fluid<D, Real> &fluid, int begin, int end)
   {
     if (colloids_.empty()) return;
     listed_.resize(end - begin);
     int listed = 0;    // lists without branches: who is in them follows no pattern
     for (int i = begin; i < end; ++i) {
       double speed = 0;
-      for (int a = 0; a < D; ++a) speed += fluid.v[a][i] * fluid.v[a][i];
+      for (int a = 0; a < D; ++a) speed += square_of(fluid.v[a][i]);
       listed_[listed] = i;
       listed += cells_.any(fluid.cell[i]) | is_fast(speed);
     }
@@ -118,14 +118,14 @@ template <int D> class NearFluid {
   // and NEAR where there are several, must be looked at more closely.
   static constexpr char FAR_OFF = 0, NEAR = 1, FAST = 2;
 
-  char within(const Fluid<D> &fluid, int i) const
+  template <class Real> char within(const Fluid<D, Real> &fluid, int i) const
   {
     const int only = cells_.only(fluid.cell[i]), c = only < 0 ? 0 : only;
     double r2 = 0, speed = 0;
     for (int a = 0; a < D; ++a) {
-      const double separation = fluid.x[a][i] - centres_[a][c];
+      const double separation = fluid.position(a, i) - centres_[a][c];
       r2 += square_of(separation - turns(a, separation) * cells_.grid().box[a]);
-      speed += fluid.v[a][i] * fluid.v[a][i];
+      speed += square_of(fluid.v[a][i]);
     }
     const double travel = allowance_ + interval_ * flight_speed(std::sqrt(speed));
     const char near = (only < 0) | (r2 < square_of(cutoffs_[c] + travel)) ? NEAR : FAR_OFF;
@@ -142,7 +142,7 @@ template <int D> class NearFluid {
 
   // Take a particle if it could come within a cutoff, and pair it. Its cell lists the images of
   // colloids that are near; a fast one meets all images, and so must itself be the one in its cell.
-  void consider(const Fluid<D> &fluid, int i)
+  template <class Real> void consider(const Fluid<D, Real> &fluid, int i)
   {
     const auto &grid = cells_.grid();
     auto particle = fluid.particle(i);

@@ -13,14 +13,15 @@ struct Layer {
 };
 
 // Of all processes.
-template <int D>
-std::vector<Layer> layers(const Fluid<D> &fluid, const Grid<D> &grid, int bins, Processes &processes)
+template <int D, class Real>
+std::vector<Layer> layers(const Fluid<D, Real> &fluid, const Grid<D> &grid, int bins,
+                          Processes &processes)
 {
   constexpr int width = D + 2;    // momentum, squares, count
   std::vector<double> sums(bins * width);
   const double per_depth = bins / grid.box[1];
   for (int i = 0; i < fluid.size(); ++i) {
-    const int bin = std::min(static_cast<int>(fluid.x[1][i] * per_depth), bins - 1);
+    const int bin = std::min(static_cast<int>(fluid.position(1, i) * per_depth), bins - 1);
     double *sum = &sums[bin * width];
     double squares = 0;
     for (int a = 0; a < D; ++a) {
