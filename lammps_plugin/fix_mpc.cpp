@@ -71,11 +71,11 @@ template <int D> void FixMPC<D>::init()
     error->all(FLERR, "fix mpc: the box must not change");
   if (!solver_) {
     const bool loading = !given_.load_file.empty();
-    make_solver(loading ? MpcState<D>::particles_in(lmp, given_.load_file) : given_.particles);
+    make_solver(loading ? MpcFluidFile<D>::particles_in(lmp, given_.load_file) : given_.particles);
     check_processes();
     guarded([&] {
       if (loading)
-        state_->load(given_.load_file);
+        fluid_file().load(given_.load_file);
       else
         state_->create(colloids_.all(), coupling());
     });
@@ -172,7 +172,7 @@ template <int D> int FixMPC<D>::modify_param(int narg, char **arg)
   if (narg < 2) error->all(FLERR, "fix_modify save: needs a file name");
   if (!solver_ || open_)
     error->all(FLERR, "fix_modify save: the step must be a multiple of N = {}", given_.every);
-  state_->save(arg[1]);
+  fluid_file().save(arg[1]);
   return 2;
 }
 
@@ -181,8 +181,9 @@ template <int D> void FixMPC<D>::write_restart(FILE *file)
   if (!solver_ || open_)
     error->all(FLERR, "fix mpc: restart: the step {} must be a multiple of N = {}",
                update->ntimestep, given_.every);
-  state_->write_restart(file, processes_.everyones(colloids_.pulls),
-                        flow_ ? flow_->state() : std::vector<double>{});
+  MpcRestart<D>(lmp, given_, *solver_, *state_, processes_)
+      .write(file, processes_.everyones(colloids_.pulls),
+             flow_ ? flow_->state() : std::vector<double>{});
 }
 
 template <int D> void FixMPC<D>::restart(char *buffer)
@@ -191,7 +192,7 @@ template <int D> void FixMPC<D>::restart(char *buffer)
     const auto header = mpc::read_restart_header<D>(buffer, given_.seed, given_.single);
     make_solver(static_cast<double>(header.fluid.particles));
     check_processes();
-    auto restored = state_->restart(buffer);
+    auto restored = MpcRestart<D>(lmp, given_, *solver_, *state_, processes_).read(buffer);
     if (flow_ && !restored.average.empty() && !flow_->restore(restored.average))
       throw mpc::Fault("restart: its flow has not the bins of this fix");
     auto &pulls = colloids_.pulls;

@@ -11,6 +11,7 @@
 #include "mpc_dump.h"
 #include "mpc_flow.h"
 #include "mpc_profile.h"
+#include "mpc_restart.h"
 #include "mpc_state.h"
 #include "mpi_processes.h"
 
@@ -47,6 +48,7 @@ template <int D> class FixMPC : public Fix {
   std::unique_ptr<mpc::Coupling<D>> make_coupling(const mpc::Vector<D> &field,
                                                   const mpc::Walls<D> *) const;
   mpc::Coupling<D> *coupling() { return solver_->coupling(); }
+  MpcFluidFile<D> fluid_file() { return {lmp, *solver_, *state_, processes_}; }
   bool couples_every_step() { return coupling() && coupling()->every_step(); }
   void check_processes();
   void remove_momentum();
