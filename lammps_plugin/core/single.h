@@ -121,7 +121,7 @@ inline __attribute__((always_inline)) void prefetch_four(const Value *of_cells,
   }
 }
 
-constexpr int AHEAD_OF_FOUR = 32;    // particles
+constexpr int AHEAD_OF_FOUR = 96;    // particles
 
 // Velocities after the turns of their cells.
 template <int D>
@@ -165,7 +165,10 @@ template <int D> class AddFour {
 
   void operator()(int first) const
   {
-    if (D == 3 && first < ahead_) prefetch_four(sums_, cell_ + first + AHEAD_OF_FOUR);
+    if (D == 3 && first < ahead_) {
+      prefetch_four(sums_, cell_ + first + AHEAD_OF_FOUR);
+      if (squares_) prefetch_four(squares_, cell_ + first + AHEAD_OF_FOUR);
+    }
     Four x = load_four(v_[0] + first), y = load_four(v_[1] + first), z, ones = {1, 1, 1, 1};
     Four square = x * x + y * y;
     if constexpr (D == 3) {

@@ -13,6 +13,7 @@ from lammps_inputs.engines import engine_named
 from lammps_inputs.engines.engine import Start
 from srd_driver.reference.single_engine import PLACES, SingleEngine
 from tests.conftest import Run
+from tests.plugin import test_large_restart as large
 from tests.plugin.fluid import largest_difference, run_mpc
 
 COLLISIONS = 20
@@ -82,6 +83,20 @@ def test_a_restart_goes_on_to_the_last_bit_and_tells_its_precision(
     double = make_scene(name, **fields)
     with pytest.raises(AssertionError, match="restart: of precision single, not double"):
         run_mpc(double, COLLISIONS, parts, command, start=start)
+
+
+def test_a_large_fluid_beside_its_restart_goes_on_to_the_last_bit(
+    tmp_path: Path, command: Run
+) -> None:
+    save = "fix_modify fluid save end.fluid\n"
+    whole, parts = tmp_path / "whole", tmp_path / "parts"
+    text = large.deck(large.BOX, f"write_restart {large.HALF}\nrun 6\n{save}")
+    large.run(whole, text.replace("density", "precision single density"), 2, command)
+    start = large.deck(f"read_restart {whole / large.HALF}", save)
+    large.run(parts, start.replace("density", "precision single density"), 2, command)
+    assert (parts / "end.fluid").read_bytes() == (whole / "end.fluid").read_bytes()
+    said = large.run(parts, start, 2, command, succeed=False)
+    assert "restart: of precision single, not double" in said
 
 
 @pytest.mark.parametrize(
