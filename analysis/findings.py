@@ -41,6 +41,7 @@ def in_si(run: RunDirectory, estimate: Estimate, length: int = 0, time: int = 0)
     units = run.manifest.si_units
     if units and estimate.value is not None:
         si = estimate.scaled(units["a0"] ** length * units["t0"] ** time)
-        powers = [f"{name}^{power}" for name, power in (("m", length), ("s", time)) if power]
-        entry |= {"value_si": si.value, "error_si": si.error, "unit_si": " ".join(powers)}
+        powers = {"m": length, "s": time}
+        unit = [n if p == 1 else f"{n}^{p}" for n, p in powers.items() if p]
+        entry |= {"value_si": si.value, "error_si": si.error, "unit_si": " ".join(unit)}
     return entry

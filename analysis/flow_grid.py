@@ -10,7 +10,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from analysis.arrays import Array
-from run_files.reading import read_text, refuse
+from analysis.averages_file import AveragesFile
+from run_files.reading import refuse
 
 
 @dataclass(frozen=True)
@@ -83,25 +84,13 @@ def read_flow(path: str | Path) -> FlowField:
         RunDirectoryError: when it is missing or no such file, or has no complete average.
     """
     path = Path(path)
-    lines = read_text(path, largest=math.inf).splitlines()
-    names = next((line.split()[1:] for line in lines if line.startswith("# Chunk Coord1")), [])
-    dimensions = 3 if "Coord3" in names else 2
+    file = AveragesFile.read(path, "Chunk Coord1")
+    dimensions = 3 if "Coord3" in file.names else 2
     wanted = flow_columns(dimensions)
-    if not set(wanted) <= set(names):
+    if not set(wanted) <= set(file.names):
         refuse(path, "not a flow field of fix mpc: no columns " + " ".join(wanted))
-    words = " ".join(line for line in lines if not line.startswith("#")).split()
-    try:
-        numbers = np.array(words, dtype=float)
-    except ValueError:
-        refuse(path, "holds text among numbers")
-    bins = int(numbers[1]) if len(numbers) > 1 and numbers[1] >= 1 else 0
-    width = 3 + bins * len(names)
-    count = len(numbers) // width
-    if not bins or not count:
-        refuse(path, "no complete average yet")
-    rows = numbers[: count * width].reshape(count, width)
-    table = rows[:, 3:].reshape(count, bins, len(names))[..., [names.index(n) for n in wanted]]
+    steps, table = file.bins(wanted)
     shape = [len(np.unique(table[0, :, axis])) for axis in range(dimensions)]
-    if np.any(rows[:, 1] != bins) or math.prod(shape) != bins or not np.isfinite(rows).all():
-        refuse(path, "its bins are no grid, not the same everywhere, or not finite")
-    return FlowField.of_table(rows[:, 0].astype(np.int64), table, shape)
+    if math.prod(shape) != table.shape[1]:
+        refuse(path, "its bins are no grid")
+    return FlowField.of_table(steps.astype(np.int64), table, shape)

@@ -1,11 +1,60 @@
-"""The particles of a run: unwrapped positions and velocities of every frame."""
+"""The particles of a run: its trajectory as MDAnalysis opens it, and the arrays of every frame."""
 
+import warnings
+from pathlib import Path
 from typing import Any
 
+import MDAnalysis
 import numpy as np
 from MDAnalysis.analysis.base import AnalysisBase
 
+from run_files.reading import refuse
+
 SPINS = ("omegax", "omegay", "omegaz")
+HEADER_LINES = 9  # of a frame
+
+
+def open_trajectory(path: Path, time_step: float, spinning: bool) -> MDAnalysis.Universe:
+    """A LAMMPS dump as an MDAnalysis Universe; `ts.data` holds the images, and spins if spinning.
+
+    Raises:
+        RunDirectoryError: when it is malformed, lacks columns or has no complete frame.
+    """
+    columns = ["ix", "iy", "iz", *(SPINS if spinning else ())]
+    with warnings.catch_warnings():
+        warnings.filterwarnings("ignore", message="Guessed all Masses")
+        warnings.filterwarnings("ignore", message="Some of the additional columns")
+        try:
+            universe = MDAnalysis.Universe(str(path), dt=time_step, additional_columns=columns)
+            first = universe.trajectory[0]
+        except (OSError, ValueError, IndexError, EOFError, KeyError):
+            refuse(path, "no complete frame yet")
+    if not first.has_velocities or not {"ix", "iy", "iz"} <= first.data.keys():
+        refuse(path, "the columns must be id type x y z vx vy vz ix iy iz")
+    return universe
+
+
+def read_frames(universe: MDAnalysis.Universe, dimension: int, spinning: bool) -> Any:
+    """`ParticleTrajectory.results` of all complete frames of what `open_trajectory` opened.
+
+    Raises:
+        RunDirectoryError: when a frame is malformed or there is no complete one.
+    """
+    path = Path(universe.filename)
+    # MDAnalysis takes a last line without its newline, so a number cut short, for complete
+    with path.open("rb") as file:
+        lines = sum(chunk.count(b"\n") for chunk in iter(lambda: file.read(1 << 20), b""))
+    frames = lines // (universe.atoms.n_atoms + HEADER_LINES)
+    if frames == 0:
+        refuse(path, "no complete frame yet")
+    try:
+        results = ParticleTrajectory(universe, dimension, spinning).run(stop=frames).results
+    except (ValueError, IndexError, KeyError) as error:
+        refuse(path, f"malformed frame: {error}")
+    read = (results.positions, results.velocities, *([results.spins] if spinning else []))
+    if not all(np.isfinite(values).all() for values in read):
+        refuse(path, "holds numbers that are not finite")
+    return results
 
 
 class ParticleTrajectory(AnalysisBase):  # type: ignore[misc]  # MDAnalysis has no types

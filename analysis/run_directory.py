@@ -2,7 +2,6 @@
 
 import math
 import re
-import warnings
 from collections.abc import Sequence
 from functools import cached_property
 from pathlib import Path
@@ -13,13 +12,14 @@ import numpy as np
 from numpy.typing import NDArray
 
 from analysis.arrays import Array
+from analysis.averages_file import AveragesFile
 from analysis.flow_grid import FlowField, flow_columns
-from analysis.particle_trajectory import SPINS, ParticleTrajectory
+from analysis.particle_trajectory import SPINS, open_trajectory, read_frames
 from analysis.run_outputs import Bins, Particles, Profile, Steps, Table
 from run_files import RunDirectoryError
 from run_files.manifest import Box, Clock, Output, Solvent, Species, read_manifest
 from run_files.progress import Progress, is_begun, read_progress
-from run_files.reading import read_text, refuse
+from run_files.reading import refuse
 
 BOX_PRECISION = 1e-5  # MDAnalysis keeps edges in float32
 
@@ -231,8 +231,7 @@ class RunDirectory:
 
     def _read_table_output(self, output: Output) -> Table:
         wanted = ["TimeStep", *(f"v_{column}" for column in output.columns)]
-        columns, count, numbers = self._read_table(output.file, "TimeStep", wanted)
-        table = self._reshape(output.file, numbers, count)[:, columns]
+        table = self._averages(output.file, "TimeStep").table(wanted)
         steps = self._check_steps(output.file, table[:, 0], first=self.clock.sample_steps)
         return Table(steps, dict(zip(output.columns, table[:, 1:].T, strict=True)))
 
@@ -261,19 +260,13 @@ class RunDirectory:
         return self._bins[name, *wanted]
 
     def _read_bins(self, name: str, wanted: list[str]) -> Bins:
-        columns, count, numbers = self._read_table(name, "Chunk Coord1", ["Coord1", *wanted])
-        if len(numbers) < 3:
-            raise RunDirectoryError(f"{self.path / name}: no complete sampling interval yet")
-        bins = numbers[1]  # each interval: step, number of bins, particles; then the bins
-        if not (2 <= bins <= len(numbers) and bins == int(bins)):
-            refuse(self.path / name, f"{bins:g} bins")
-        rows = self._reshape(name, numbers, 3 + int(bins) * count)
-        if np.any(rows[:, 1] != bins):
-            raise RunDirectoryError(f"{self.path / name}: the number of bins is not constant")
-        table = rows[:, 3:].reshape(len(rows), int(bins), count)
-        positions, *values = (table[:, :, column] for column in columns)
-        steps = self._check_steps(name, rows[:, 0], first=self.clock.sample_steps)
-        return Bins(steps, positions[0], dict(zip(wanted, values, strict=True)))
+        steps, table = self._averages(name, "Chunk Coord1").bins(["Coord1", *wanted])
+        positions, *values = np.moveaxis(table, -1, 0)
+        checked = self._check_steps(name, steps, first=self.clock.sample_steps)
+        return Bins(checked, positions[0], dict(zip(wanted, values, strict=True)))
+
+    def _averages(self, name: str, mark: str) -> AveragesFile:
+        return AveragesFile.read(self._checked(name), mark)
 
     def field(self, name: str = "flow") -> FlowField:
         """The flow of the fluid on a grid, by the name of its file.
@@ -285,18 +278,14 @@ class RunDirectory:
         if grid is None:
             raise RunDirectoryError(f"{self.path}: no flow field was asked for (flow_interval)")
         file = self._output(name, "flow").file
-        wanted = flow_columns(len(grid.bins))
-        columns, count, numbers = self._read_table(file, "Chunk Coord1", wanted)
-        bins = math.prod(grid.bins)
-        rows = self._reshape(file, numbers, 3 + bins * count)
-        if np.any(rows[:, 1] != bins):
-            refuse(self.path / file, f"{rows[0, 1]:g} bins; the manifest says {bins}")
-        every = grid.samples * self.clock.sample_steps
-        expected = every * np.arange(1, len(rows) + 1)
-        if np.any(rows[:, 0] != expected):
-            wrong = int(np.flatnonzero(rows[:, 0] != expected)[0])
-            refuse(self.path / file, f"step {expected[wrong]} expected, {rows[wrong, 0]:g} found")
-        table = rows[:, 3:].reshape(len(rows), bins, count)[..., columns]
+        steps, table = self._averages(file, "Chunk Coord1").bins(flow_columns(len(grid.bins)))
+        if table.shape[1] != math.prod(grid.bins):
+            wanted = math.prod(grid.bins)
+            refuse(self.path / file, f"{table.shape[1]} bins; the manifest says {wanted}")
+        expected = grid.samples * self.clock.sample_steps * np.arange(1, len(steps) + 1)
+        if np.any(steps != expected):
+            wrong = int(np.flatnonzero(steps != expected)[0])
+            refuse(self.path / file, f"step {expected[wrong]} expected, {steps[wrong]:g} found")
         return FlowField.of_table(expected, table, grid.bins)
 
     def flow_used(self, field: FlowField) -> NDArray[np.bool_]:
@@ -324,32 +313,12 @@ class RunDirectory:
             RunDirectoryError: when the trajectory is missing, malformed or has no complete frame.
         """
         output = self._output(name, "trajectory")
-        name = output.file
-        path = self._checked(name)
-        spins = [each for each in output.columns if each in SPINS]
-        with warnings.catch_warnings():
-            warnings.filterwarnings("ignore", message="Guessed all Masses")
-            warnings.filterwarnings("ignore", message="Some of the additional columns")
-            try:
-                universe = MDAnalysis.Universe(
-                    str(path),
-                    dt=self.time_step,
-                    additional_columns=["ix", "iy", "iz", *spins],
-                )
-                first = universe.trajectory[0]
-            except (OSError, ValueError, IndexError, EOFError, KeyError):
-                raise RunDirectoryError(f"{self.path / name}: no complete frame yet") from None
-        if not first.has_velocities or not {"ix", "iy", "iz"} <= first.data.keys():
-            raise RunDirectoryError(
-                f"{self.path / name}: the columns must be id type x y z vx vy vz ix iy iz"
-            )
+        path = self._checked(output.file)
+        universe = open_trajectory(path, self.time_step, _spinning(output))
         expected = sum(species.count for species in self.manifest.system.species)
         if universe.atoms.n_atoms != expected:
-            raise RunDirectoryError(
-                f"{self.path / name}: {universe.atoms.n_atoms} particles; the manifest says "
-                f"{expected}"
-            )
-        edges = np.diagonal(first.triclinic_dimensions)
+            refuse(path, f"{universe.atoms.n_atoms} particles; the manifest says {expected}")
+        edges = np.diagonal(universe.trajectory.ts.triclinic_dimensions)
         for edge, size in zip(edges, self.box.sizes, strict=False):
             if abs(edge - size) > BOX_PRECISION * size:
                 refuse(path, f"a box edge of {edge:g}; the manifest says {size:g}")
@@ -373,59 +342,12 @@ class RunDirectory:
         return self._particles[name]
 
     def _read_particles(self, trajectory: str) -> Particles:
+        output = self._output(trajectory, "trajectory")
         universe = self.universe(trajectory)
-        name = self._output(trajectory, "trajectory").file
-        # MDAnalysis takes a last line without its newline, so a number cut short, for complete
-        with (self.path / name).open("rb") as file:
-            lines = sum(chunk.count(b"\n") for chunk in iter(lambda: file.read(1 << 20), b""))
-        frames = lines // (universe.atoms.n_atoms + 9)
-        if frames == 0:
-            raise RunDirectoryError(f"{self.path / name}: no complete frame yet")
-        spinning = set(SPINS) <= set(self._output(trajectory, "trajectory").columns)
-        walk = ParticleTrajectory(universe, self.box.dimensions, spinning)
-        try:
-            results = walk.run(stop=frames).results
-        except (ValueError, IndexError, KeyError) as error:
-            raise RunDirectoryError(f"{self.path / name}: malformed frame: {error}") from None
-        read = (results.positions, results.velocities, *([results.spins] if spinning else []))
-        if not all(np.isfinite(values).all() for values in read):
-            raise RunDirectoryError(f"{self.path / name}: holds numbers that are not finite")
-        steps = self._check_steps(name, results.steps, first=0)
+        results = read_frames(universe, self.box.dimensions, _spinning(output))
+        steps = self._check_steps(output.file, results.steps, first=0)
         species = np.array(self._each_particle("name"))
         return Particles(steps, results.positions, results.velocities, species, results.spins)
-
-    def _read_table(
-        self, name: str, mark: str, wanted: Sequence[str]
-    ) -> tuple[list[int], int, Array]:
-        """Where the wanted columns of a LAMMPS output file are, of how many, and all its numbers.
-
-        The comment line that holds `mark` names the columns. A last line that is cut short is left
-        out.
-        """
-        text = read_text(self._checked(name), largest=math.inf)
-        lines = text[: text.rfind("\n") + 1].splitlines()
-        comments = [line[1:] for line in lines if line.startswith("#")]
-        names = next((line.split() for line in comments if mark in line), [])
-        for column in wanted:
-            if column not in names:
-                raise RunDirectoryError(f"{self.path / name}: no column {column}")
-        data = "\n".join(line for line in lines if not line.startswith("#"))
-        with warnings.catch_warnings():
-            warnings.simplefilter("error", DeprecationWarning)
-            try:
-                numbers = np.fromstring(data, sep=" ") if data else np.empty(0)
-            except (ValueError, DeprecationWarning):  # which one depends on numpy's version
-                raise RunDirectoryError(f"{self.path / name}: holds text among numbers") from None
-        if not np.all(np.isfinite(numbers)):
-            raise RunDirectoryError(f"{self.path / name}: holds numbers that are not finite")
-        return [names.index(column) for column in wanted], len(names), numbers
-
-    def _reshape(self, name: str, numbers: Array, columns: int) -> Array:
-        """Complete rows of a table of so many columns; a last, incomplete one is dropped."""
-        rows = len(numbers) // columns
-        if rows == 0:
-            raise RunDirectoryError(f"{self.path / name}: no complete sampling interval yet")
-        return numbers[: rows * columns].reshape(rows, columns)
 
     def _check_steps(self, name: str, steps: Sequence[float] | NDArray[Any], first: int) -> Steps:
         """The steps as integers, when they start at the first and leave no gap."""
@@ -456,3 +378,8 @@ class RunDirectory:
         if not least <= last <= most:
             now = least if last < least else most
             refuse(self.path / name, f"ends at step {last}; the run is at step {now} of {total}")
+
+
+def _spinning(output: Output) -> bool:
+    """Whether a trajectory holds angular velocities."""
+    return set(SPINS) <= set(output.columns)

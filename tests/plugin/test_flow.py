@@ -147,10 +147,11 @@ def test_the_flow_of_a_deck_of_ones_own_is_read_and_exported(tmp_path: Path, com
     [
         ("", "not a flow field of fix mpc"),
         ("# Chunk Coord1 Ncount density/number vx temp\n", "not a flow field of fix mpc"),
-        ("{head}", "no complete average yet"),
-        ("{head}8 2 9\n 1 0 0 1 1 0 0 1\n", "no complete average yet"),
+        ("{head}", "no complete sampling interval yet"),
+        ("{head}8 2 9\n 1 0 0 1 1 0 0 1\n", "no complete sampling interval yet"),
         ("{head}8 1 9\n 1 0 0 1 1 x 0 1\n", "holds text among numbers"),
-        ("{head}8 1 9\n 1 0 0 1 1 nan 0 1\n", "its bins are no grid"),
+        ("{head}8 1 9\n 1 0 0 1 1 nan 0 1\n", "not finite"),
+        ("{head}8 0 9\n", "0 bins"),
         ("{head}8 3 9\n 1 0 0 1 1 0 0 1\n 2 0 1 1 1 0 0 1\n 3 1 0 1 1 0 0 1\n", "no grid"),
     ],
 )
