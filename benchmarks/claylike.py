@@ -1,6 +1,6 @@
 """fix mpc with colloids of hecht-2005 against fix srd, and where its time goes.
 
-    python benchmarks/claylike.py [--pairs 5] [--page docs/performance.md]
+    python benchmarks/claylike.py [--pairs 5] [--tables against ...] [--page docs/performance.md]
 
 Coupling I against the tuned peer deck, interleaved pairs; both couplings against their parts, and
 two ranks. Times are LAMMPS's loop times multiplied by its share of the processor, in milliseconds
@@ -93,39 +93,50 @@ RANKS = {
 }
 
 
+def against(pairs: int) -> str:
+    """Coupling I and fix srd."""
+    rows = []
+    for name, (srd, mpc, asked) in PAIRS.items():
+        times = [(srd.time(), mpc.time()) for _ in range(pairs)]
+        theirs, ours = (median(column) for column in zip(*times, strict=True))
+        ratio = median(srd / mpc for srd, mpc in times)
+        rows.append((name, f"{theirs:.4g}", f"{ours:.3g}", f"{ratio:.1f}", str(asked)))
+    return table(("coupling", "fix srd [ms]", "fix mpc [ms]", "ratio", "asked"), rows)
+
+
+def parts(rounds: int) -> str:
+    """Both couplings, whole and in parts."""
+    rows = []
+    for name, (deck, asked) in PARTS.items():
+        rows.append((name, f"{median(deck.time() for _ in range(rounds)):.3g}", asked))
+    bandwidth = f"Copy bandwidth: {copy_bandwidth():.3g} bytes/s read and written."
+    return table(("fix mpc", "ms a collision", "asked"), rows) + "\n\n" + bandwidth
+
+
+def ranks(pairs: int) -> str:
+    """Two ranks, which need two idle processors."""
+    rows = []
+    for name, deck in RANKS.items():
+        rows.append((name, f"{median(deck.time(1) / deck.time(2) for _ in range(pairs)):.2f}"))
+    return table(("fix mpc", "two ranks over one (asked: 1.7)"), rows)
+
+
+TABLES = {"against": against, "parts": parts, "ranks": ranks}
+
+
 def main() -> None:
     """Print the tables, or put them into a page."""
     parser = argparse.ArgumentParser(description=__doc__.partition("\n")[0])
     parser.add_argument("--pairs", type=int, default=5)
-    parser.add_argument("--page", type=Path, help="a page with the marks of `claylike`")
+    parser.add_argument("--tables", nargs="+", choices=TABLES, default=list(TABLES))
+    parser.add_argument("--page", type=Path, help="a page with the marks of `claylike-TABLE`")
     options = parser.parse_args()
-
-    against = []
-    for name, (srd, mpc, asked) in PAIRS.items():
-        times = [(srd.time(), mpc.time()) for _ in range(options.pairs)]
-        theirs, ours = (median(column) for column in zip(*times, strict=True))
-        ratio = median(srd / mpc for srd, mpc in times)
-        against.append((name, f"{theirs:.4g}", f"{ours:.3g}", f"{ratio:.1f}", str(asked)))
-    parts = []
-    for name, (deck, limit) in PARTS.items():
-        spent = median(deck.time() for _ in range(options.pairs))
-        parts.append((name, f"{spent:.3g}", limit))
-    ranks = []
-    for name, deck in RANKS.items():
-        gain = median(deck.time(1) / deck.time(2) for _ in range(options.pairs))
-        ranks.append((name, f"{gain:.2f}", "1.7"))
-    text = "\n\n".join(
-        (
-            table(("coupling", "fix srd [ms]", "fix mpc [ms]", "ratio", "asked"), against),
-            table(("fix mpc", "ms a collision", "asked"), parts),
-            table(("fix mpc", "two ranks over one", "asked"), ranks),
-            f"Copy bandwidth: {copy_bandwidth():.3g} bytes/s read and written.",
-        )
-    )
-    if options.page:
-        replace_block(options.page, "claylike", text)
-    else:
-        print(text)
+    for name in options.tables:
+        text = TABLES[name](options.pairs)
+        if options.page:
+            replace_block(options.page, f"claylike-{name}", text)
+        else:
+            print(text + "\n")
 
 
 if __name__ == "__main__":
