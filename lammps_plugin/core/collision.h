@@ -40,6 +40,18 @@ template <int D> struct CellSum {
   Pack<2> squares_and_count{};    // of the velocities, weighted by mass
 
   double count() const { return squares_and_count[1]; }
+
+  void add(double x, double y)
+  {
+    momentum += pack(x, y);
+    squares_and_count += pack(x * x + y * y, 1);
+  }
+
+  void add(double x, double y, double z)
+  {
+    momentum += pack(x, y, z);
+    squares_and_count += pack(x * x + y * y + z * z, 1);
+  }
 };
 
 // What is in a cell beside fluid.

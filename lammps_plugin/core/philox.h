@@ -72,20 +72,6 @@ inline double logarithm(double w)
   return exponent * M_LN2 + 2 * s * series;
 }
 
-// e^x for |x| < 700, in the same way; beyond it is no number of any use.
-inline double exponential(double x)
-{
-  const int exponent = static_cast<int>(x * M_LOG2E + 1024.5) - 1024;    // the nearest
-  const double y = (x - exponent * 0x1.62e42feep-1) - exponent * 0x1.a39ef35793c76p-33;    // ln 2
-  double series = 1;
-  for (int k = 13; k > 0; --k) series = 1 + series * y * (1.0 / k);
-  const std::uint64_t bits = static_cast<std::uint64_t>(static_cast<std::int64_t>(exponent) + 1023)
-      << 52;
-  double power;
-  std::memcpy(&power, &bits, sizeof power);
-  return power * series;
-}
-
 // 1 / k! for k = 0 ... 17.
 constexpr std::array<double, 18> inverse_factorials()
 {
@@ -93,6 +79,21 @@ constexpr std::array<double, 18> inverse_factorials()
   double factorial = 1;    // exact: all are below 2^53
   for (int k = 1; k < 18; ++k) inverses[k] = 1 / (factorial *= k);
   return inverses;
+}
+
+// e^x for |x| < 700, in the same way; beyond it is no number of any use.
+inline double exponential(double x)
+{
+  const int exponent = static_cast<int>(x * M_LOG2E + 1024.5) - 1024;    // the nearest
+  const double y = (x - exponent * 0x1.62e42feep-1) - exponent * 0x1.a39ef35793c76p-33;    // ln 2
+  constexpr auto inverse = inverse_factorials();
+  double series = inverse[13];
+  for (int k = 12; k >= 0; --k) series = inverse[k] + series * y;
+  const std::uint64_t bits = static_cast<std::uint64_t>(static_cast<std::int64_t>(exponent) + 1023)
+      << 52;
+  double power;
+  std::memcpy(&power, &bits, sizeof power);
+  return power * series;
 }
 
 inline std::array<double, 2> cosine_and_sine_of_turn(double u)

@@ -12,6 +12,7 @@
 #pragma once
 
 #include "coupling.h"
+#include "lanes.h"
 #include "migration.h"
 #include "random_solvent.h"
 #include "streaming.h"
@@ -113,8 +114,11 @@ template <int D> class Solver {
   {
     turn();
     Vector<D> total{};
-    for (int a = 0; a < D; ++a)
-      for (double component : fluid_.v[a]) total[a] += component;
+    for (int a = 0; a < D; ++a) {
+      const auto *v = fluid_.v[a].data();
+      const auto term = [=](int i) { return std::array<double, 1>{v[i]}; };
+      total[a] = sum_in_lanes<1>(fluid_.size(), term)[0];
+    }
     processes_.sum(total.data(), D);
     return total;
   }
@@ -422,15 +426,10 @@ template <int D> class Solver {
 
   void add_to(CellSum<D> &sum, int i)
   {
-    const double x = fluid_.v[0][i], y = fluid_.v[1][i];
-    if constexpr (D == 2) {
-      sum.momentum += pack(x, y);
-      sum.squares_and_count += pack(x * x + y * y, 1);
-    } else {
-      const double z = fluid_.v[2][i];
-      sum.momentum += pack(x, y, z);
-      sum.squares_and_count += pack(x * x + y * y + z * z, 1);
-    }
+    if constexpr (D == 2)
+      sum.add(fluid_.v[0][i], fluid_.v[1][i]);
+    else
+      sum.add(fluid_.v[0][i], fluid_.v[1][i], fluid_.v[2][i]);
   }
 
   // The cell of a stray, if it is this process's after all.
