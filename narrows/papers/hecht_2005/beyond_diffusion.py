@@ -81,33 +81,23 @@ def _make(directories: Directories, quality: Quality) -> Outcome:
     attracting = {key: attraction(key[2] / 1e3, key[1]) for key in found}
     results: list[Result] = []
     for fraction in SURFACE_POTENTIALS:
-        for psi, kappa, words in (
-            (SURFACE_POTENTIALS[fraction][-1], KAPPAS[0], "suspended"),
-            (SURFACE_POTENTIALS[fraction][0], KAPPAS[-1], "clustered"),
-        ):
-            each = found[fraction, kappa, psi]
-            where = f"{words}, {fraction:.0%}, {psi} mV, {kappa:.2g} / m"
-            results.append(
-                measured(NUMBER, f"D over {PERIOD:g} t0, {where} [a0^2/t0]", each.diffusion)
-            )
+        keys = sorted((k for k in found if k[0] == fraction), key=lambda k: attracting[k].depth)
+        for key, words in ((keys[0], "shallowest"), (keys[-1], "deepest")):
+            each = found[key]
+            where = f"{words} minimum, {fraction:.0%}, {key[2]} mV, {key[1]:.2g} / m"
+            told = f"D over {PERIOD:g} t0, {where} [a0^2/t0]"
+            results.append(measured(NUMBER, told, each.diffusion))
             results += [
                 measured(NUMBER, f"share of the motion: {PARTS[name]}, {where}", part)
                 for name, part in zip(PARTS, each.parts, strict=True)
             ]
             told = f"bonds broken within {PERIOD:g} t0, share, {where}"
             results.append(measured(NUMBER, told, each.broken))
-        suspended, clustered = (
-            found[fraction, kappa, psi].diffusion
-            for psi, kappa in (
-                (SURFACE_POTENTIALS[fraction][-1], KAPPAS[0]),
-                (SURFACE_POTENTIALS[fraction][0], KAPPAS[-1]),
-            )
-        )
         results.append(
             claimed(
                 NUMBER,
-                f"D suspended less clustered, {fraction:.0%} [a0^2/t0]",
-                suspended - clustered,
+                f"D at the shallowest less at the deepest minimum, {fraction:.0%} [a0^2/t0]",
+                found[keys[0]].diffusion - found[keys[-1]].diffusion,
                 "the particles in the cluster are relatively fixed",
                 "positive",
             )

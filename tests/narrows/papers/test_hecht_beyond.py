@@ -195,3 +195,12 @@ def test_the_figure_of_the_size() -> None:
     claims = [result for result in results.values() if result.claim]
     assert len(claims) == len(beyond_size.QUANTITIES)
     assert "4486 colloids" in " ".join(results)
+
+
+@pytest.mark.parametrize("quality", QUALITIES)
+def test_no_other_figure_means_a_step_of_the_ladder(quality: Quality) -> None:
+    """A scene that is a step begins as another run ended, in whatever figure."""
+    steps = {scene for ladder in PAPER.ladders(quality) for scene in ladder}
+    for figure in PAPER.figures:
+        if figure.number != "beyond-boundary":
+            assert not steps & set(figure.scenes(quality)), figure.number
