@@ -12,7 +12,7 @@ from narrows.papers.session import Plan
 BY_NUMBER = {figure.number: figure for figure in PAPER.figures}
 
 
-@pytest.mark.parametrize(("quality", "runs"), [("quick", 59), ("full", 64)])
+@pytest.mark.parametrize(("quality", "runs"), [("quick", 61), ("full", 65)])
 def test_runs_can_be_run(quality: Quality, runs: int, tmp_path: Path) -> None:
     plan = Plan(PAPER, PAPER.figures, quality, tmp_path)
     for run in plan.runs:
