@@ -201,7 +201,7 @@ def through(function: Callable[[float], float], at: Estimate) -> Estimate:
     """A function of a measured number, to first order in its error."""
     if at.value is None:
         return at
-    step = max(at.standard_error, 1e-3 * at.value)
+    step = 1e-3 * at.value
     slope = (function(at.value + step) - function(at.value - step)) / (2 * step)
     return Estimate(function(at.value), abs(slope) * at.standard_error)
 
@@ -286,23 +286,35 @@ def _shifts(
     return results
 
 
+def left_over(out: Estimate, anew: Estimate, before: Estimate) -> Estimate:
+    """(out - anew) / (before - anew) of three independent numbers, to first order in their errors.
+
+    Args:
+        out: of a run that began with another's end.
+        anew: of one from a lattice.
+        before: of that other.
+    """
+    ahead = before.number - anew.number
+    share = (out.number - anew.number) / ahead
+    parts = (out.standard_error, (1 - share) * anew.standard_error, share * before.standard_error)
+    return Estimate(share, math.hypot(*parts) / abs(ahead))
+
+
 def _ways(
     states: dict[tuple[float, float, int], State], again: dict[tuple[float, int], State]
 ) -> list[Result]:
     """From clusters less from a lattice: what is left of the start."""
-    results = []
+    results, before = [], Estimate(None, None)
     for (kappa, psi), out in again.items():
         if (0.14, kappa, psi) in states:
-            results.append(
-                claimed(
-                    NUMBER,
-                    "bonds per colloid in the last quarter, from clusters less from a lattice, "
-                    f"{psi} mV, {kappa:.2g} / m",
-                    out.last - states[0.14, kappa, psi].last,
-                    "the state does not depend on the start",
-                    "zero",
-                )
-            )
+            anew = states[0.14, kappa, psi].last
+            where = f"{psi} mV, {kappa:.2g} / m"
+            told = f"bonds in the last quarter, from clusters less from a lattice, {where}"
+            same = "the state does not depend on the start"
+            results.append(claimed(NUMBER, told, out.last - anew, same, "zero"))
+            told = f"the same over those by which the start was ahead, {where}"
+            results.append(measured(NUMBER, told, left_over(out.last, anew, before)))
+        before = out.last
     return results
 
 
@@ -327,7 +339,7 @@ def _draw(
         if known:
             x, y = zip(*known, strict=True)
             points(right, x, y, number, label=f"{fraction:.0%}", linestyle="-")
-    out = [(psi, each.last.number) for (_, psi), each in again.items()]
+    out = [(psi, each.last.number) for (_, psi), each in again.items() if psi != START]
     left.plot(*zip(*out, strict=True), "x", color="0.3", label="14 %, from clusters")
     left.axhline(CLUSTERED, color="0.6", linewidth=0.8)
     left.set(xlabel=r"surface potential $\Psi_0$ [mV]", ylabel="bonds per colloid")
@@ -342,6 +354,8 @@ def _draw(
         *zip(*drawn, strict=True), color="0.3", label=f"$B_2$ = {CRITICAL:g} of hard spheres'"
     )
     right.set(xlabel=r"$\kappa$ [$10^8$ / m]", ylabel=r"$\Psi_0$ at the boundary [mV]")
+    right.text(0.45, 0.85, "suspended", color="0.4", transform=right.transAxes)
+    right.text(0.8, 0.05, "clustered", color="0.4", transform=right.transAxes)
     right.legend()
     return figure
 
@@ -350,10 +364,13 @@ def _table(
     states: dict[tuple[float, float, int], State], again: dict[tuple[float, int], State]
 ) -> dict[str, Column]:
     rows = [(f, k, p, "lattice", each) for (f, k, p), each in states.items()]
-    rows += [(0.14, k, p, "clusters", each) for (k, p), each in again.items()]
+    rows += [
+        (0.14, k, p, "lattice" if p == START else "clusters", each)
+        for (k, p), each in again.items()
+    ]
     table: dict[str, Column] = {
         "volume_fraction": [row[0] for row in rows],
-        "kappa": [row[1] for row in rows],
+        "kappa": [f"{row[1]:.2g}" for row in rows],
         "surface_potential_mV": [row[2] for row in rows],
         "start": [row[3] for row in rows],
     }

@@ -109,10 +109,10 @@ def _make(directories: Directories, quality: Quality) -> Outcome:
     results.append(measured(NUMBER, told, Estimate(float(len(drifting)), 0.0)))
     table: dict[str, Column] = {
         "volume_fraction": [key[0] for key in found],
-        "kappa": [key[1] for key in found],
+        "kappa": [f"{key[1]:.2g}" for key in found],
         "surface_potential_mV": [key[2] for key in found],
-        "depth_kBT": [each.depth for each in attracting.values()],
-        "virial": [each.virial for each in attracting.values()],
+        "depth": [round(each.depth, 3) for each in attracting.values()],
+        "virial": [round(each.virial, 3) for each in attracting.values()],
     }
     columns = {
         "diffusion": [each.diffusion for each in found.values()],
@@ -152,7 +152,7 @@ def _draw(
             label=words,
         )
     label = "depth of the minimum [$k_B T$]"
-    left.set(xlabel=label, ylabel=f"$D$ over {PERIOD:g} $t_0$ [$a_0^2/t_0$]", yscale="log")
+    left.set(xlabel=label, ylabel=f"$D$ over {PERIOD:g} $t_0$ [$a_0^2/t_0$]", ylim=(0, None))
     middle.set(xlabel=label, ylabel="share of the motion, 14 %", ylim=(0, 1))
     right.set(xlabel=label, ylabel=f"bonds broken within {PERIOD:g} $t_0$", ylim=(0, None))
     left.legend()

@@ -20,7 +20,13 @@ from narrows.papers.hecht_2005 import (
     beyond_growth,
     beyond_size,
 )
-from narrows.papers.hecht_2005.beyond_boundary import attraction, crossing, theory, through
+from narrows.papers.hecht_2005.beyond_boundary import (
+    attraction,
+    crossing,
+    left_over,
+    theory,
+    through,
+)
 from narrows.papers.results import Result
 
 QUALITIES: tuple[Quality, Quality] = ("quick", "full")
@@ -112,6 +118,16 @@ def test_an_error_goes_through_a_function() -> None:
     assert found.standard_error == pytest.approx(0.02, rel=1e-3)
     unknown = Estimate(None, None, "none")
     assert through(math.log, unknown) is unknown
+
+
+def test_what_is_left_of_a_start() -> None:
+    """By drawing all three anew."""
+    random = np.random.default_rng(2)
+    out, anew, before = 1.4 + 0.02 * random.normal(size=(3, 20_000)) + [[0.0], [-0.4], [0.6]]
+    found = left_over(Estimate(1.4, 0.02), Estimate(1.0, 0.02), Estimate(2.0, 0.02))
+    assert found.number == pytest.approx(0.4)
+    drawn = (out - anew) / (before - anew)
+    assert found.standard_error == pytest.approx(float(drawn.std()), rel=0.05)
 
 
 def test_attraction_is_that_outside_the_barrier() -> None:
