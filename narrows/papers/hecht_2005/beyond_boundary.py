@@ -9,7 +9,7 @@ such short attractions part into gas and liquid at about -1.5.
 """
 
 import math
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Iterable, Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -42,6 +42,7 @@ CLUSTERED = 1.0  # bonds per colloid
 WIDER = 1.15  # distance of bonded centres over the diameter, to see what it matters
 FARTHEST = 1.25  # from the measured surface potentials to the boundary, as a factor
 CHANGING = 0.1  # of the bonds, from which on a state is not yet what it will be
+SHORT = "a lower bound: runs are short beside the slow motion in their bonds"
 CROSSED = 5.0  # a lower barrier is crossed, and the primary minimum counts too [kBT]
 WEAKEST, STRONGEST = 0.01, 0.2  # surface potentials: no barrier, and close to all repulsion [V]
 INNERMOST, OUTERMOST = 0.9, 2.5  # distances of the integrals over the diameter
@@ -166,6 +167,11 @@ def state(run: RunDirectory) -> State:
     )
 
 
+def _short(used: Iterable[Estimate]) -> str | None:
+    """That errors of some are lower bounds, if so."""
+    return SHORT if any(each.reason for each in used) else None
+
+
 def crossing(
     surface_potentials: Sequence[float], bonds: Sequence[Estimate], level: float = CLUSTERED
 ) -> Estimate:
@@ -194,7 +200,8 @@ def crossing(
         return Estimate(None, None, f"{side} all surface potentials of the runs")
     there = fit_polynomial(places - root, logarithms)
     value = math.exp(root)
-    return Estimate(value, value * there.intercept.standard_error / abs(there.slope.number))
+    error = value * there.intercept.standard_error / abs(there.slope.number)
+    return Estimate(value, error, _short(bonds))
 
 
 def through(function: Callable[[float], float], at: Estimate) -> Estimate:
@@ -203,7 +210,7 @@ def through(function: Callable[[float], float], at: Estimate) -> Estimate:
         return at
     step = 1e-3 * at.value
     slope = (function(at.value + step) - function(at.value - step)) / (2 * step)
-    return Estimate(function(at.value), abs(slope) * at.standard_error)
+    return Estimate(function(at.value), abs(slope) * at.standard_error, at.reason)
 
 
 def boundary_of(
@@ -297,7 +304,7 @@ def left_over(out: Estimate, anew: Estimate, before: Estimate) -> Estimate:
     ahead = before.number - anew.number
     share = (out.number - anew.number) / ahead
     parts = (out.standard_error, (1 - share) * anew.standard_error, share * before.standard_error)
-    return Estimate(share, math.hypot(*parts) / abs(ahead))
+    return Estimate(share, math.hypot(*parts) / abs(ahead), _short((out, anew, before)))
 
 
 def _ways(
