@@ -496,8 +496,9 @@ template <int D> class Solver {
 
   void make_turns(const CounterRandom &random)
   {
+    const auto words = random.mixed(Stream::Rotation);
     grid_.each_cell([&](int cell, const std::array<int, D> &rows) {
-      method_.rotation.draw(random, grid_.number(rows), turns_[cell]);
+      method_.rotation.draw(words, grid_.number(rows), turns_[cell]);
       fix_point<D>(turns_[cell], sums_.mean(cell));
     });
     cut_.clear();

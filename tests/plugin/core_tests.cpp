@@ -114,7 +114,7 @@ void rotation_in_three_dimensions_is_orthogonal()
   for (auto axes : {Axes::Coordinate, Axes::Random})
     for (int cell = 0; cell < 50; ++cell) {
       Turn<3> turn;
-      Rotation(2.0, axes).draw(CounterRandom{3, 1}, cell, turn);
+      Rotation(2.0, axes).draw(CounterRandom{3, 1}.mixed(Stream::Rotation), cell, turn);
       for (int a = 0; a < 3; ++a)
         for (int b = 0; b < 3; ++b) {
           double product = 0;

@@ -19,7 +19,7 @@ from srd_driver.reference.collision import (
     rotate,
     signs,
 )
-from srd_driver.reference.counter_random import CounterRandom, Stream
+from srd_driver.reference.counter_random import CounterRandom, Stream, uniform
 from tests.parts import solvent_of
 
 Array = NDArray[np.float64]
@@ -99,7 +99,7 @@ def test_coordinate_axes_are_listed_in_the_documented_order() -> None:
     axes = [(1, 0, 0), (-1, 0, 0), (0, 1, 0), (0, -1, 0), (0, 0, 1), (0, 0, -1)]
     random = CounterRandom(3, 5)
     drawn = coordinate_axes(random, 50).T
-    for axis, u in zip(drawn, random.uniform(Stream.ROTATION, 50)[0], strict=True):
+    for axis, u in zip(drawn, uniform(random.mixed(Stream.ROTATION, 50))[0], strict=True):
         assert tuple(axis) == axes[int(6 * u)]
 
 
