@@ -85,7 +85,7 @@ template <int D> class ForceCoupling : public Coupling<D> {
     for (int a = 0; a < D; ++a)
       for (auto *values : {&x_[a], &v_[a], &acceleration_[a]}) values->resize(places);
     int away = 0;    // along an axis without walls, if there is one: nobody is not to meet them
-    while (away < D - 1 && lowest_[away] == 0) ++away;
+    while (away < D - 1 && walls_ && walls_->across(away)) ++away;
     for (int c = 0; c < colloids; ++c)
       for (int k = spans_[c].last; k < spans_[c].end; ++k)
         for (int a = 0; a < D; ++a) {

@@ -58,15 +58,15 @@ template <int D> class NearFluid {
     allowance_ = interval_ * speed;
     candidates_.clear();
     others_.clear();
-    ranges_.clear();
     cutoffs_.clear();
+    square_reaches_.clear();
     for (int a = 0; a < D; ++a) centres_[a].clear();
     cells_.begin(grid);
     for (int a = 0; a < D; ++a) turns_per_length_[a] = grid.periodic[a] ? 1 / grid.box[a] : 0.0;
     for (int c = 0; c < static_cast<int>(colloids.size()); ++c) {
       const double cutoff = cutoff_(colloids[c].type), pairing = reach(cutoff) + allowance_;
-      ranges_.push_back({cutoff, square_of(pairing)});
       cutoffs_.push_back(cutoff);
+      square_reaches_.push_back(square_of(pairing));
       for (int a = 0; a < D; ++a) centres_[a].push_back(colloids[c].x[a]);
       cells_.enter(c, colloids[c].x, pairing);    // at all cells with what could be paired with it
     }
@@ -96,10 +96,6 @@ template <int D> class NearFluid {
  private:
   static constexpr double CHECKED_SPEED = 6.0;    // thermal speeds; e^-18 are faster
   static constexpr double PAIR_SPEED = 7.0;       // room for what one step adds to the checked
-
-  struct Range {
-    double cutoff, square_reach;    // of the force, and of pairing squared
-  };
 
   static double square_of(double a) { return a * a; }
 
@@ -196,11 +192,10 @@ template <int D> class NearFluid {
         const double separation = particle.x[a] - colloids_[c].x[a];
         r2 += square_of(fast ? separation : separation - turns(a, separation) * grid.box[a]);
       }
-      const auto &range = ranges_[c];
-      const bool paired = r2 < range.square_reach;
+      const bool paired = r2 < square_reaches_[c];
       if (!paired && !fast) return;
       const double travel = allowance_ + interval_ * flight_speed(std::sqrt(square_speed));
-      within |= r2 < square_of(range.cutoff + travel);
+      within |= r2 < square_of(cutoffs_[c] + travel);
       if (!paired) return;
       if (nearest >= 0) others_.push_back({number, r2 < least ? nearest : c});
       if (r2 < least) {
@@ -241,8 +236,7 @@ template <int D> class NearFluid {
 
   ColloidCells<D> cells_;    // as the interval began
   std::vector<Colloid<D>> colloids_;
-  std::vector<Range> ranges_;            // of each colloid
-  std::vector<double> cutoffs_;          // so that many are read at once
+  std::vector<double> cutoffs_, square_reaches_;    // of each colloid's force, and of pairing
   std::array<std::vector<double>, D> centres_;
   Vector<D> turns_per_length_;           // 0 across walls
   double allowance_ = 0;

@@ -21,6 +21,8 @@ template <int D> class RandomSolvent {
   virtual void collect(const Fluid<D> &, int /*begin*/, int /*end*/) {}    // the velocities of before
   virtual void share(Processes &) {}
   virtual void redraw(Fluid<D> &, int begin, int end) const = 0;
+
+  virtual double bytes() const { return 0; }
 };
 
 // A random permutation of 0 ... p - 1, p the smallest prime that is not below a count of at most 2^32:
@@ -122,6 +124,8 @@ template <int D> class ShuffledSolvent : public RandomSolvent<D> {
       }
     }
   }
+
+  double bytes() const override { return all_.capacity() * 1.0 * sizeof(Pack<D>); }
 
  private:
   Permutation permutation_{1};
