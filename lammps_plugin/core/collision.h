@@ -145,7 +145,7 @@ template <int D> void scale_about(Turn<D> &turn, const Vector<D> &point, double 
 
 enum class Axes { Random, Coordinate };
 
-// The rotation of a cell, drawn from its own random numbers; angle in radians.
+// The rotation of a cell, drawn from its own mixed words; angle in radians.
 class Rotation {
  public:
   Rotation(double angle, Axes axes) : cosine_(std::cos(angle)), sine_(std::sin(angle)), axes_(axes)
@@ -153,17 +153,17 @@ class Rotation {
   }
 
   // 2D: counter-clockwise where the first uniform is below 1/2, else clockwise.
-  void draw(const CounterRandom &random, std::uint64_t cell, Turn<2> &turn) const
+  void draw(const MixedWords &words, std::uint64_t cell, Turn<2> &turn) const
   {
-    const double sine = uniform(random.words(Stream::Rotation, cell)[0]) < 0.5 ? sine_ : -sine_;
+    const double sine = uniform(words.word(0, cell)) < 0.5 ? sine_ : -sine_;
     turn.column[0] = pack(cosine_, sine);
     turn.column[1] = pack(-sine, cosine_);
   }
 
   // 3D: about an axis uniform on the sphere (3.8), or about one of +-x, +-y, +-z.
-  void draw(const CounterRandom &random, std::uint64_t cell, Turn<3> &turn) const
+  void draw(const MixedWords &words, std::uint64_t cell, Turn<3> &turn) const
   {
-    const auto u = uniforms(random.words(Stream::Rotation, cell));
+    const double u[2] = {uniform(words.word(0, cell)), uniform(words.word(1, cell))};
     Vector<3> n{};
     if (axes_ == Axes::Coordinate) {
       const int choice = static_cast<int>(6 * u[0]);

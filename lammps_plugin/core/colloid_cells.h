@@ -93,7 +93,7 @@ template <int D> class ColloidCells {
     looks_.back() = {total, 0};
   }
 
-  bool any(int cell) const { return nearest(cell) < std::numeric_limits<float>::infinity(); }
+  bool any(int cell) const { return only_[cell] != NOBODY; }
 
   // Ask for what the next and begin() look at.
   void prefetch_look(int cell) const { __builtin_prefetch(looks_.data() + cell); }

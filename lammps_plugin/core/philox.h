@@ -132,6 +132,24 @@ template <int count> std::array<double, 4> normals(const Words &words)
   return z;
 }
 
+// Number `number` of SplitMix64 (Steele, Lea and Flood, OOPSLA 2014), from 0 on.
+inline std::uint64_t split_mix(std::uint64_t seed, std::uint64_t number)
+{
+  std::uint64_t z = seed + (number + 1) * 0x9E3779B97F4A7C15u;
+  z = (z ^ z >> 30) * 0xBF58476D1CE4E5B9u;
+  z = (z ^ z >> 27) * 0x94D049BB133111EBu;
+  return z ^ z >> 31;
+}
+
+// Of a stream of which every item needs words: word k of item i is number i of SplitMix64 from key_k,
+// the four keys a block of Philox. One for each item would take longer than all else that is done to
+// a cell's velocities, or to a particle.
+struct MixedWords {
+  Words keys;
+
+  std::uint64_t word(int k, std::uint64_t item) const { return split_mix(keys[k], item); }
+};
+
 // The random numbers of one collision.
 struct CounterRandom {
   std::uint64_t seed;
@@ -141,6 +159,8 @@ struct CounterRandom {
   {
     return philox({item + 1, collision, block, 0}, seed, static_cast<std::uint64_t>(stream));
   }
+
+  MixedWords mixed(Stream stream) const { return {words(stream, 0)}; }
 };
 
 }    // namespace mpc

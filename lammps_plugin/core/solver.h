@@ -178,7 +178,7 @@ template <int D> class Solver {
   double memory() const
   {
     return fluid_.bytes() + sums_.of.capacity() * (1.0 * sizeof(CellSum<D>) + sizeof(Turn<D>)) +
-        tiles_.bytes();
+        tiles_.bytes() + (method_.random_solvent ? method_.random_solvent->bytes() : 0);
   }
 
  private:
@@ -496,15 +496,18 @@ template <int D> class Solver {
 
   void make_turns(const CounterRandom &random)
   {
+    const auto words = random.mixed(Stream::Rotation);
     grid_.each_cell([&](int cell, const std::array<int, D> &rows) {
-      method_.rotation.draw(random, grid_.number(rows), turns_[cell]);
+      method_.rotation.draw(words, grid_.number(rows), turns_[cell]);
       fix_point<D>(turns_[cell], sums_.mean(cell));
     });
     cut_.clear();
     if (!method_.walls) return;
     const auto &walls = *method_.walls;
+    const bool alike = !walls.across(0);    // all cells side by side along the first axis
+    Cut<D> cut;
     grid_.each_cell([&](int cell, const std::array<int, D> &rows) {
-      const auto cut = walls.cutting(grid_, rows);
+      if (!alike || rows[0] == grid_.lower[0]) cut = walls.cutting(grid_, rows);
       if (cut.count == 0) return;
       fix_point<D>(turns_[cell], walls.mean_of_cut(cut, sums_, cell, random, grid_.number(rows)));
       cut_.push_back({cell, cut});
