@@ -1,23 +1,31 @@
-"""fix mpc against the tuned fix srd decks: speed, ranks, sizes, and how far from the memory.
+"""fix mpc against the tuned fix srd decks: speed, sizes, how far from the memory, and two ranks.
 
-    python benchmarks/engines.py --out runs/engines [--pairs 7] [--largest 2e7]
+    python benchmarks/engines.py --out runs/engines [--parts pairs ranks] [--page PAGE]
 
 Every pair of runs is interleaved and repeated, and medians are compared, so that what else the
-machine does falls on both. Times are LAMMPS's loop times multiplied by its share of the processor.
-Prints the table, and writes it beside the figure (speed.png) into the folder.
+machine does falls on both. Times are LAMMPS's loop times multiplied by its share of the processor;
+those of two ranks by the clock: they need an idle machine. Each part leaves its table in the folder
+and can be run by itself; the page gets all that are there, between its marks of `engines`. The
+figure (speed.png) is drawn when the pairs and the sizes are known.
 """
 
 import argparse
+import json
+import multiprocessing
 import re
 import subprocess
 import sys
 import time
+from collections.abc import Callable
 from dataclasses import dataclass
 from pathlib import Path
 from statistics import median
+from typing import Any
 
 import numpy as np
 from matplotlib.figure import Figure
+
+from narrows.markdown import replace_block, table
 
 DECKS = Path(__file__).parent / "decks"
 COMMANDS = Path(sys.executable).parent
@@ -72,81 +80,105 @@ PAIRS = {
 }
 
 
-def copy_bandwidth() -> float:
-    """Bytes read and written in a second by copying 256 MB."""
+def copy_bandwidth(clock: Callable[[], float] = time.process_time) -> float:
+    """Bytes read and written in a second of a clock by copying 256 MB."""
     source, target = np.ones((2, 2**25))  # written once: pages of zeros would share one frame
     seconds = []
-    for _ in range(5):
-        began = time.process_time()
+    for _ in range(12):
+        began = clock()
         np.copyto(target, source)
-        seconds.append(time.process_time() - began)
-    return 2 * source.nbytes / min(seconds)
+        seconds.append(clock() - began)
+    return 2 * source.nbytes / median(seconds)
+
+
+def two_copies() -> float:
+    """Bandwidth of two processes that copy at once over that of one."""
+    with multiprocessing.get_context("spawn").Pool(2) as pool:
+        together = sum(pool.map(copy_bandwidth, [time.perf_counter] * 2, chunksize=1))
+        return together / pool.apply(copy_bandwidth, [time.perf_counter])
 
 
 def bytes_per_update(dimensions: int, density: float = 10) -> float:
-    """Read and written: position, velocity and cell, and a cell's sum and turn by its particles."""
-    particle = 2 * dimensions * 8 + 4
-    cell = {2: 32 + 48, 3: 64 + 128}[dimensions]
-    return 2 * (particle + cell / density)
+    """Read and written, counted in the passes of core/solver.h and core/tile_order.h.
+
+    A particle's position, velocity and cell are read and written once, and moved at every 64th
+    collision. A cell's sum is cleared, read and written by its particles, and read for the map; the
+    map is written, and read by the particles.
+    """
+    state = 2 * dimensions * 8 + 4
+    sort = 2 * (state + 4) + 4 * (4 + 2 * dimensions)  # numbers too, by an order of 4 bytes
+    of_sum, of_map = {2: (32, 48), 3: (64, 128)}[dimensions]
+    return 2 * state + sort / 64 + (4 * of_sum + 2 * of_map) / density
 
 
-def compare(pairs: int) -> tuple[list[str], dict[str, list[float]]]:
-    """Table rows of fix mpc against fix srd, and the ratios of the pairs."""
-    rows = ["| scene | fix srd | fix mpc | ratio | asked |", "|---|---|---|---|---|"]
-    ratios = {}
+def compare(pairs: int) -> tuple[str, dict[str, list[float]]]:
+    """The table of fix mpc against fix srd, and the ratios of the pairs."""
+    rows, ratios = [], {}
     for scene, (srd, mpc, asked) in PAIRS.items():
         rates = [(srd.rate(), mpc.rate()) for _ in range(pairs)]
         ratios[scene] = [ours / theirs for theirs, ours in rates]
         theirs, ours = (median(column) for column in zip(*rates, strict=True))
-        rows.append(
-            f"| {scene} | {theirs:.3g} | {ours:.3g} | {median(ratios[scene]):.2f} | {asked} |"
-        )
-    return rows, ratios
+        of_rates = (f"{theirs:.3g}", f"{ours:.3g}")
+        rows.append((scene, *of_rates, *quartiles(ratios[scene]), f"{asked}"))
+    head = ("scene", "fix srd", "fix mpc", "ratio", "quartiles", "asked")
+    return table(head, rows), ratios
 
 
 def sizes(dimensions: int, largest: float) -> dict[int, float]:
     """Updates per second by the number of particles."""
     rates = {}
-    for particles in 10 ** np.arange(4.0, np.log10(largest) + 0.01, 0.66):
+    for particles in np.unique(np.append(10 ** np.arange(4.0, np.log10(largest), 0.66), largest)):
         n = round((particles / 10) ** (1 / dimensions))
         count = 10 * n**dimensions
         deck = Deck(
             f"mpc_bulk{dimensions}d", max(20, round(3e7 / count)), count, ("-var", "n", str(n))
         )
-        rates[count] = median(deck.rate() for _ in range(3))
+        rates[count] = median(deck.rate() for _ in range(3 if count < 3e6 else 1))
     return rates
 
 
-def two_ranks(pairs: int) -> float:
-    """Speed of two ranks over one on 1e6 particles in 2D; needs two idle processors."""
-    deck = Deck("mpc_bulk2d", 150, 998560, ("-var", "n", "316"))
-    return median(deck.speed(2) / deck.speed(1) for _ in range(pairs))
-
-
-def main() -> None:
-    parser = argparse.ArgumentParser(description=__doc__.partition("\n")[0])
-    parser.add_argument("--out", type=Path, required=True)
-    parser.add_argument("--pairs", type=int, default=7)
-    parser.add_argument("--largest", type=float, default=2e7)
-    options = parser.parse_args()
-    options.out.mkdir(parents=True, exist_ok=True)
-
-    rows, ratios = compare(options.pairs)
-    by_size = {dimensions: sizes(dimensions, options.largest) for dimensions in (2, 3)}
-    bandwidth = copy_bandwidth()
-    rows += ["", f"two ranks over one, 1e6 particles: {two_ranks(options.pairs):.2f}"]
-    rows.append(f"copy bandwidth: {bandwidth:.3g} bytes/s read and written")
-    for dimensions, rates in by_size.items():
-        moved = bytes_per_update(dimensions) * min(rates.values())
-        rows.append(
-            f"{dimensions}D: {bytes_per_update(dimensions):.0f} bytes an update, at the slowest "
-            f"size {moved / bandwidth:.0%} of the copy bandwidth; slowest over fastest size "
-            f"{min(rates.values()) / max(rates.values()):.2f}"
+def of_memory(dimensions: int, rates: dict[int, float], bandwidth: float) -> str:
+    """A table of the rates beside the bandwidth of a copy."""
+    fastest = max(rates.values())
+    rows = [
+        (
+            f"{count:.3g}",
+            f"{rate:.3g}",
+            f"{rate / fastest:.2f}",
+            f"{bytes_per_update(dimensions) * rate / bandwidth:.0%}",
         )
-    text = "\n".join(rows)
-    print(text)
-    (options.out / "speed.md").write_text(text + "\n")
+        for count, rate in rates.items()
+    ]
+    head = (f"particles, {dimensions}D", "updates/s", "of the fastest", "of the copy bandwidth")
+    return (
+        table(head, rows)
+        + f"\n\n{bytes_per_update(dimensions):.0f} bytes an update; copy bandwidth of one core "
+        + f"{bandwidth:.3g} bytes/s read and written."
+    )
 
+
+def two_ranks(pairs: int, largest: float) -> str:
+    """A table of the speed of two ranks over one in 2D, beside two copies over one."""
+    rows = []
+    for particles in (1e6, largest):
+        n = round((particles / 10) ** 0.5)
+        deck = Deck("mpc_bulk2d", max(20, round(3e8 / particles)), 10 * n**2, ("-var", "n", str(n)))
+        speeds = [deck.speed(2) / deck.speed(1) for _ in range(pairs)]
+        rows.append((f"{particles:.3g} particles", *quartiles(speeds)))
+    rows.append(("copies of 256 MB at once", *quartiles([two_copies() for _ in range(pairs)])))
+    return table(("two over one", "median", "quartiles"), rows)
+
+
+def quartiles(values: list[float]) -> tuple[str, str]:
+    """The median in words, and the quartiles."""
+    low, middle, high = np.quantile(values, [0.25, 0.5, 0.75])
+    return f"{middle:.2f}", f"{low:.2f} to {high:.2f}"
+
+
+def draw(
+    ratios: dict[str, list[float]], by_size: dict[int, dict[int, float]], bandwidth: float
+) -> Figure:
+    """Ratios of the pairs, and speed by size."""
     figure = Figure(figsize=(9, 3.6), layout="constrained")
     left, right = figure.subplots(1, 2)
     left.boxplot(list(ratios.values()), tick_labels=["channel", "2D", "3D"])
@@ -161,7 +193,47 @@ def main() -> None:
         )
     right.set(xlabel="fluid particles", ylabel="million updates/s", ylim=(0, None))
     right.legend(fontsize="small")
-    figure.savefig(options.out / "speed.png", dpi=150)
+    return figure
+
+
+PARTS = ("pairs", "2d", "3d", "ranks")
+
+
+def main() -> None:
+    parser = argparse.ArgumentParser(description=(__doc__ or "").partition("\n")[0])
+    parser.add_argument("--out", type=Path, required=True)
+    parser.add_argument("--parts", nargs="+", choices=PARTS, default=PARTS)
+    parser.add_argument("--pairs", type=int, default=7)
+    parser.add_argument("--largest", type=float, default=2e7)
+    parser.add_argument("--page", type=Path, help="a page with the marks of `engines`")
+    options = parser.parse_args()
+    options.out.mkdir(parents=True, exist_ok=True)
+
+    for part in options.parts:
+        known: dict[str, Any] = {}
+        if part == "pairs":
+            text, known["ratios"] = compare(options.pairs)
+        elif part == "ranks":
+            text = two_ranks(options.pairs, options.largest)
+        else:
+            known["rates"] = sizes(int(part[0]), options.largest)
+            known["bandwidth"] = copy_bandwidth()
+            text = of_memory(int(part[0]), known["rates"], known["bandwidth"])
+        print(text, flush=True)
+        (options.out / f"{part}.md").write_text(text + "\n", encoding="utf-8")
+        (options.out / f"{part}.json").write_text(json.dumps(known), encoding="utf-8")
+    files = [options.out / f"{part}.md" for part in PARTS]
+    if options.page:
+        texts = [file.read_text(encoding="utf-8").strip() for file in files if file.exists()]
+        replace_block(options.page, "engines", "\n\n".join(texts))
+    if all(file.exists() for file in files[:3]):
+        pairs, *sized = (json.loads(file.with_suffix(".json").read_text()) for file in files[:3])
+        by_size = {
+            dimensions: {int(count): rate for count, rate in of["rates"].items()}
+            for dimensions, of in zip((2, 3), sized, strict=True)
+        }
+        figure = draw(pairs["ratios"], by_size, sized[0]["bandwidth"])
+        figure.savefig(options.out / "speed.png", dpi=150)
 
 
 if __name__ == "__main__":

@@ -1,25 +1,28 @@
 """Single precision beside double: speed, drifts, and points of the chart of error against run time.
 
-    python benchmarks/single.py --out runs/single [--pairs 7] [--budget 6] [--collisions 1000000]
+    python benchmarks/single.py --out runs/single [--tables speed drift accuracy] [--page PAGE]
 
 Pairs are interleaved; times are processor seconds, ratios those of the pairs. Prints the tables,
-and writes them into the folder.
+and puts them between the marks of a page.
 """
 
 import argparse
 import re
 import subprocess
+from collections.abc import Callable
 from dataclasses import replace
 from pathlib import Path
 from statistics import quantiles
 
 from engines import COMMANDS, DECKS, Deck
-from narrows.markdown import table
+from narrows.markdown import replace_block, table
 from pareto import STUDIES, Quantity, Setting, evaluate, measure_speeds, plan, setting
 from pareto import _name as name_of
+from run_files.writing import replace_text
 from srd_driver.sweep import run_all
 
 SIZES = ((2, 316), (2, 1000), (3, 46), (3, 100))  # dimensions, edge in cells of 10 particles
+NAMES = ("speed", "drift", "accuracy")
 UPDATES = 4e7  # of a run
 DOUBLE, SINGLE = setting("mpc"), setting("mpc", precision="single")
 
@@ -125,18 +128,22 @@ def main() -> None:
     parser.add_argument("--out", type=Path, required=True)
     parser.add_argument("--pairs", type=int, default=7)
     parser.add_argument("--budget", type=float, default=6.0, help="processor seconds of a setting")
+    parser.add_argument("--tables", nargs="+", choices=NAMES, default=NAMES)
+    parser.add_argument("--page", type=Path, help="page between whose marks tables are put")
     parser.add_argument("--collisions", type=int, default=1_000_000)
     options = parser.parse_args()
     options.out.mkdir(parents=True, exist_ok=True)
-    parts = []
-    for part in (
-        lambda: speeds(options.pairs),
-        lambda: drifts(options.collisions),
-        lambda: points(options.out, options.budget),
-    ):
-        parts.append(part())
-        print(parts[-1], flush=True)
-    (options.out / "single.md").write_text("\n\n".join(parts) + "\n")
+    tables: dict[str, Callable[[], str]] = {
+        "single-speed": lambda: speeds(options.pairs),
+        "single-drift": lambda: drifts(options.collisions),
+        "single-accuracy": lambda: points(options.out, options.budget),
+    }
+    for name in options.tables:
+        made = tables[f"single-{name}"]()
+        print(made, flush=True)
+        if options.page:
+            text = options.page.read_text(encoding="utf-8")
+            replace_text(options.page, replace_block(text, f"single-{name}", made))
 
 
 if __name__ == "__main__":

@@ -357,6 +357,15 @@ template <int D> const mpc::Moments<D> &FixMPC<D>::moments()
   return moments_;
 }
 
+template <int D> const mpc::Vector<D> &FixMPC<D>::momentum()
+{
+  if (momentum_step_ != update->ntimestep) {
+    momentum_ = solver_->momentum();
+    momentum_step_ = update->ntimestep;
+  }
+  return momentum_;
+}
+
 template <int D> const mpc::FaceVectors<D> &FixMPC<D>::momentum_of_walls()
 {
   if (walls_step_ != update->ntimestep) {
@@ -375,7 +384,7 @@ template <int D> double FixMPC<D>::compute_vector(int index)
   const int component = index < PARTICLES ? index : (index - SKEWNESS) % 3;
   const int face = (index - WALLS) / 3;
   if (component >= D || face >= 2 * D) return 0.0;
-  if (index < PARTICLES) return solver_->momentum()[component];
+  if (index < PARTICLES) return momentum()[component];
   if (index < KURTOSIS) return moments().skewness[component];
   if (index < WALLS) return moments().excess_kurtosis[component];
   return momentum_of_walls()[face][component] / interval_;

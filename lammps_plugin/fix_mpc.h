@@ -57,6 +57,7 @@ template <int D> class FixMPC : public Fix {
   template <class Action> void guarded(const Action &);
   const std::vector<mpc::Layer> &layers();
   const mpc::Moments<D> &moments();
+  const mpc::Vector<D> &momentum();
   const mpc::FaceVectors<D> &momentum_of_walls();
 
   const MpcArguments<D> given_;
@@ -75,8 +76,9 @@ template <int D> class FixMPC : public Fix {
 
   std::vector<mpc::Layer> layers_;
   mpc::Moments<D> moments_;
+  mpc::Vector<D> momentum_{};
   mpc::FaceVectors<D> momentum_of_walls_{};
-  bigint layers_step_ = -1, moments_step_ = -1, walls_step_ = -1;    // that they are of
+  bigint layers_step_ = -1, moments_step_ = -1, momentum_step_ = -1, walls_step_ = -1;    // of each
 };
 
 }    // namespace LAMMPS_NS

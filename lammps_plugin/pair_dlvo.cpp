@@ -17,7 +17,13 @@
 #include <string>
 
 using namespace LAMMPS_NS;
-using mpc::Vector;
+
+namespace {
+
+constexpr double FARTHEST_COULOMB = 40;    // decay lengths: there it is no more than a rounding
+constexpr double MARGIN = 1.0 / 64;        // of the reach: few more pairs, for some ten steps
+
+}    // namespace
 
 PairDLVO::PairDLVO(LAMMPS *lmp) : Pair(lmp)
 {
@@ -42,6 +48,7 @@ void PairDLVO::allocate()
     for (int j = 1; j <= types_; ++j) setflag[i][j] = 0;
   spheres_.resize((types_ + 1) * (types_ + 1));
   near_.resize(spheres_.size());
+  far_.resize(spheres_.size());
 }
 
 void PairDLVO::settings(int narg, char **arg)
@@ -106,6 +113,7 @@ void PairDLVO::coeff(int narg, char **arg)
   }
   if (given.hamaker > 0 && given.depth == 0)
     error->all(FLERR, "pair_coeff dlvo: minimum: needed with vdw, which diverges at contact");
+  given.least = given.diameter * given.diameter;
   if (given.hamaker > 0) given.join();
   if (given.cutoff <= std::max(given.diameter, given.joint))
     error->all(FLERR, "pair_coeff dlvo: cutoff {}: must be beyond contact and minimum, {}",
@@ -138,6 +146,12 @@ double PairDLVO::init_one(int i, int j)
   auto &spheres = of(i, j);
   spheres.shift = 0;
   if (offset_flag) spheres.shift = spheres.energy(spheres.cutoff);
+  const double charged = spheres.diameter + FARTHEST_COULOMB / spheres.kappa;
+  spheres.near = std::max(spheres.joint, spheres.diameter);
+  if (spheres.charge > 0) spheres.near = std::max(spheres.near, std::min(charged, spheres.cutoff));
+  if (spheres.viscosity > 0)
+    spheres.near = std::max(spheres.near, spheres.diameter + spheres.farthest);
+  spheres.far = spheres.hamaker > 0 ? std::max(spheres.cutoff, spheres.near) : spheres.near;
   of(j, i) = spheres;
   return std::max(spheres.cutoff, spheres.diameter + spheres.farthest);
 }
@@ -146,7 +160,9 @@ double PairDLVO::init_one(int i, int j)
 inline double PairDLVO::Spheres::coulomb(double r, double inverse) const
 {
   const double exponent = kappa * (r - diameter);
-  return exponent < 40 ? charge * diameter * diameter * inverse * mpc::exponential(-exponent) : 0.0;
+  return exponent < FARTHEST_COULOMB
+      ? charge * diameter * diameter * inverse * mpc::exponential(-exponent)
+      : 0.0;
 }
 
 // (1) and (2).
@@ -157,12 +173,16 @@ double PairDLVO::Spheres::dlvo_energy(double r) const
   return coulomb(r, 1 / r) - hamaker / 12 * (ratio / (1 - ratio) + ratio + 2 * std::log1p(-ratio));
 }
 
-// With the inverse of r, for divisions take longer than the rest.
-inline double PairDLVO::Spheres::dlvo_force(double r, double inverse) const
+inline double PairDLVO::Spheres::dlvo_force(double r) const
 {
-  const double d2 = diameter * diameter, ratio = d2 * inverse * inverse, gap = r * r - d2;
-  const double repulsion = coulomb(r, inverse) * (inverse + kappa);
-  return hamaker > 0 ? repulsion - hamaker / 6 * d2 * d2 * ratio * inverse / (gap * gap) : repulsion;
+  return coulomb(r, 1 / r) * (1 / r + kappa) + r * attraction(r * r);
+}
+
+// The force (2) over the distance.
+inline double PairDLVO::Spheres::attraction(double square) const
+{
+  const double d2 = diameter * diameter, gap = square - d2, both = square * gap;
+  return -hamaker / 6 * d2 * d2 * d2 / (both * both);
 }
 
 // With the parabola -depth + stiffness (r - d)^2 / 2 from contact to the joint, and (3) below contact.
@@ -174,13 +194,18 @@ double PairDLVO::Spheres::energy(double r) const
   return outer + hertz * overlap * overlap * std::sqrt(overlap) - shift;
 }
 
-// Without branches, for loops over many.
-inline double PairDLVO::Spheres::force(double r, double inverse) const
+// The force over the distance, without branches, for loops over many. It has one division, as
+// divisions take longer than the rest.
+inline double PairDLVO::Spheres::pull(double square) const
 {
-  const double outer = dlvo_force(r, inverse);
-  const double overlap = r < diameter ? diameter - r : 0, gap = r < diameter ? 0 : r - diameter;
-  const double force = r < joint ? -stiffness * gap : outer;
-  return force + 2.5 * hertz * overlap * std::sqrt(overlap);
+  const double d2 = diameter * diameter, r = std::sqrt(square);
+  const double gap = std::max(square - d2, least), gap2 = gap * gap;
+  const double both = 1 / (square * gap2), inverse_square = gap2 * both, inverse = r * inverse_square;
+  const double outer = coulomb(r, inverse) * (inverse + kappa) * inverse -
+      hamaker / 6 * d2 * d2 * d2 * inverse_square * both;
+  const double overlap = r < diameter ? diameter - r : 0, beyond = r < diameter ? 0 : r - diameter;
+  const double inner = r < joint ? -stiffness * beyond * inverse : outer;
+  return inner + 2.5 * hertz * overlap * std::sqrt(overlap) * inverse;
 }
 
 // The innermost gap h with V(h) + depth = h V'(h) / 2: there a parabola from the depth at contact has
@@ -189,7 +214,7 @@ void PairDLVO::Spheres::join()
 {
   const auto excess = [&](double gap) {
     const double r = diameter + gap;
-    return dlvo_energy(r) + depth + 0.5 * gap * dlvo_force(r, 1 / r);
+    return dlvo_energy(r) + depth + 0.5 * gap * dlvo_force(r);
   };
   double inner = 1e-8 * diameter, outer = inner;
   while (excess(outer) < 0) {
@@ -201,7 +226,8 @@ void PairDLVO::Spheres::join()
     (excess(middle) < 0 ? inner : outer) = middle;
   }
   joint = diameter + outer;
-  stiffness = -dlvo_force(joint, 1 / joint) / outer;
+  least = joint * joint - diameter * diameter;
+  stiffness = -dlvo_force(joint) / outer;
 }
 
 // Of the relative velocity along the line of centres: lubrication (4), largest in contact and zero
@@ -218,91 +244,128 @@ inline double PairDLVO::Spheres::normal_friction(double r) const
 void PairDLVO::compute(int eflag, int vflag)
 {
   ev_init(eflag, vflag);
-  const int *type = atom->type;
-  for (int ii = 0; ii < list->inum; ++ii) {
-    const int i = list->ilist[ii], *neighbors = list->firstneigh[i], count = list->numneigh[i];
-    const auto types = static_cast<std::size_t>(type[i]) * (types_ + 1);
-    if (types_ == 1) {
-      gather(types + 1, i, neighbors, count, eflag);
-    } else {
-      for (int jj = 0; jj < count; ++jj)
-        gather(types + type[neighbors[jj] & NEIGHMASK], i, neighbors + jj, 1, eflag);
-    }
+  if (neighbor->ago == 0 || moved()) sort();
+  for (std::size_t types = 0; types < spheres_.size(); ++types) {
+    act(spheres_[types], near_[types], true, eflag);
+    act(spheres_[types], far_[types], false, eflag);
   }
-  for (std::size_t types = 0; types < near_.size(); ++types)
-    if (near_[types].count > 0) act(spheres_[types], near_[types], eflag);
   if (vflag_fdotr) virial_fdotr_compute();
 }
 
-// Pairs of two types, as the list has them: whether they are in range is told by their forces.
-inline void PairDLVO::gather(std::size_t types, int i, const int *neighbors, int count, int eflag)
+// Whether pairs may have come in reach since they were sorted: two atoms by half the margin each.
+[[gnu::noinline]] bool PairDLVO::moved() const
 {
-  auto &pairs = near_[types];
+  const double *x = atom->x[0], *places = places_.data();
+  const double most = margin_ / (2 * std::sqrt(3.0));    // along each axis
+  const int count = static_cast<int>(places_.size());
+  int moved = 0;
+  for (int k = 0; k < count; ++k) moved |= std::abs(x[k] - places[k]) > most;
+  return moved;
+}
+
+// Pairs that are in reach, or may come there soon, by what they need.
+void PairDLVO::sort()
+{
   double **x = atom->x;
-  const double xi = x[i][0], yi = x[i][1], zi = x[i][2];
-  while (count > 0) {
-    const int first = pairs.count, some = std::min(count, Pairs::MOST - first);
-    for (int n = 0; n < some; ++n) {
-      const int j = neighbors[n] & NEIGHMASK, k = first + n;
-      pairs.i[k] = i;
-      pairs.j[k] = j;
-      pairs.x[k] = xi - x[j][0];
-      pairs.y[k] = yi - x[j][1];
-      pairs.z[k] = zi - x[j][2];
+  const int *type = atom->type, atoms = atom->nlocal + atom->nghost;
+  places_.assign(x[0], x[0] + 3 * atoms);
+  double reach = 0;
+  for (const auto &spheres : spheres_) reach = std::max(reach, spheres.far);
+  margin_ = MARGIN * reach;
+  for (auto *ranges : {&near_, &far_})
+    for (auto &listed : *ranges) {
+      listed.i.clear();
+      listed.j.clear();
     }
-    pairs.count += some;
-    neighbors += some;
-    count -= some;
-    if (pairs.count == Pairs::MOST) act(spheres_[types], pairs, eflag);
+  for (int ii = 0; ii < list->inum; ++ii) {
+    const int i = list->ilist[ii], *neighbors = list->firstneigh[i], count = list->numneigh[i];
+    const auto types = static_cast<std::size_t>(type[i]) * (types_ + 1);
+    for (int jj = 0; jj < count; ++jj) {
+      const int j = neighbors[jj] & NEIGHMASK;
+      const auto &spheres = spheres_[types + type[j]];
+      double square = 0;
+      for (int a = 0; a < 3; ++a) square += (x[i][a] - x[j][a]) * (x[i][a] - x[j][a]);
+      const double near = spheres.near + margin_, far = spheres.far + margin_;
+      if (!(square < far * far)) continue;
+      auto &listed = (square < near * near ? near_ : far_)[types + type[j]];
+      listed.i.push_back(i);
+      listed.j.push_back(j);
+    }
   }
 }
 
-// All that the pairs gathered do.
-void PairDLVO::act(const Spheres &spheres, Pairs &pairs, int eflag)
+// All that the pairs of a range do, some at a time.
+void PairDLVO::act(const Spheres &spheres, const Listed &listed, bool near, int eflag)
 {
-  repel(spheres, pairs);
-  if (dissipates_) dissipate(spheres, pairs);
-  if (evflag)
-    tally(spheres, pairs, eflag);
-  else
-    push(pairs);
-  pairs.count = 0;
+  const int all = static_cast<int>(listed.i.size());
+  for (int first = 0; first < all; first += Pairs::MOST) {
+    gather(listed, first, std::min(all - first, Pairs::MOST));
+    if (near)
+      repel(spheres);
+    else
+      attract(spheres);
+    if (near && dissipates_) dissipate(spheres);
+    if (evflag)
+      tally(spheres, eflag);
+    else
+      push();
+  }
 }
 
-// (1) to (3). A function of its own: inlined, GCC 12 leaves the vector registers' upper halves in use
-// (no vzeroupper), and LAMMPS's own styles, of older instructions, then take twice as long.
-[[gnu::noinline]] void PairDLVO::repel(const Spheres &given, Pairs &pairs)
+void PairDLVO::gather(const Listed &listed, int first, int count)
+{
+  const double *x = atom->x[0];
+  pairs_.count = count;
+  pairs_.i = listed.i.data() + first;
+  pairs_.j = listed.j.data() + first;
+  for (int k = 0; k < count; ++k) {
+    const double *xi = x + 3 * pairs_.i[k], *xj = x + 3 * pairs_.j[k];
+    pairs_.x[k] = xi[0] - xj[0];
+    pairs_.y[k] = xi[1] - xj[1];
+    pairs_.z[k] = xi[2] - xj[2];
+  }
+}
+
+// (1) to (3). This and the next are functions of their own: inlined, GCC 12 leaves the vector
+// registers' upper halves in use (no vzeroupper), and LAMMPS's own styles, of older instructions,
+// then take twice as long.
+[[gnu::noinline]] void PairDLVO::repel(const Spheres &given)
 {
   const Spheres spheres = given;
-  const int count = pairs.count;
-  for (int k = 0; k < count; ++k) {
-    const double ex = pairs.x[k], ey = pairs.y[k], ez = pairs.z[k];
-    const double r = std::sqrt(ex * ex + ey * ey + ez * ez), inverse = 1 / r;
-    pairs.x[k] = ex * inverse;
-    pairs.y[k] = ey * inverse;
-    pairs.z[k] = ez * inverse;
-    pairs.r[k] = r;
-    const double force = spheres.force(r, inverse);
-    pairs.along[k] = r < spheres.cutoff ? force : 0;
+  const double most = spheres.cutoff * spheres.cutoff;
+  for (int k = 0; k < pairs_.count; ++k) {
+    const double square = pairs_.square(k), pull = spheres.pull(square);
+    pairs_.pull[k] = square < most ? pull : 0;
   }
 }
 
-// Of all pairs; those of an atom follow each other.
-void PairDLVO::push(const Pairs &pairs)
+// (2) alone.
+[[gnu::noinline]] void PairDLVO::attract(const Spheres &given)
+{
+  const Spheres spheres = given;
+  const double most = spheres.cutoff * spheres.cutoff;
+  for (int k = 0; k < pairs_.count; ++k) {
+    const double square = pairs_.square(k), pull = spheres.attraction(square);
+    pairs_.pull[k] = square < most ? pull : 0;
+  }
+}
+
+void PairDLVO::push()
 {
   double *f = atom->f[0];
-  const int count = pairs.count, own = force->newton_pair ? atom->nlocal + atom->nghost : atom->nlocal;
+  const int count = pairs_.count, *i_of = pairs_.i, *j_of = pairs_.j;
+  const int own = force->newton_pair ? atom->nlocal + atom->nghost : atom->nlocal;
   for (int k = 0; k < count;) {
-    const int i = pairs.i[k];
+    const int i = i_of[k];
     double fx = 0, fy = 0, fz = 0;
-    for (; k < count && pairs.i[k] == i; ++k) {
-      const double px = pairs.along[k] * pairs.x[k], py = pairs.along[k] * pairs.y[k],
-                   pz = pairs.along[k] * pairs.z[k];
+    for (; k < count && i_of[k] == i; ++k) {
+      const double px = pairs_.pull[k] * pairs_.x[k], py = pairs_.pull[k] * pairs_.y[k],
+                   pz = pairs_.pull[k] * pairs_.z[k];
       fx += px;
       fy += py;
       fz += pz;
-      if (pairs.j[k] >= own) continue;
-      double *fj = f + 3 * pairs.j[k];
+      if (j_of[k] >= own) continue;
+      double *fj = f + 3 * j_of[k];
       fj[0] -= px;
       fj[1] -= py;
       fj[2] -= pz;
@@ -314,27 +377,27 @@ void PairDLVO::push(const Pairs &pairs)
 }
 
 // The same, with the energy and the virial.
-void PairDLVO::tally(const Spheres &spheres, const Pairs &pairs, int eflag)
+void PairDLVO::tally(const Spheres &spheres, int eflag)
 {
-  for (int k = 0; k < pairs.count; ++k) {
-    const double e[3] = {pairs.x[k], pairs.y[k], pairs.z[k]}, r = pairs.r[k];
+  for (int k = 0; k < pairs_.count; ++k) {
+    const double r = std::sqrt(pairs_.square(k)), pull = pairs_.pull[k];
+    const Vector from{pairs_.x[k], pairs_.y[k], pairs_.z[k]};
     const double energy = eflag && r < spheres.cutoff ? spheres.energy(r) : 0;
-    const double f = pairs.along[k];
-    push(pairs.i[k], pairs.j[k], {f * e[0], f * e[1], f * e[2]}, e, r, energy);
+    push(pairs_.i[k], pairs_.j[k], {pull * from[0], pull * from[1], pull * from[2]}, from, energy);
   }
 }
 
 // Friction along the line of centres, and of surfaces in contact, with the noise that they demand.
-void PairDLVO::dissipate(const Spheres &spheres, Pairs &pairs)
+void PairDLVO::dissipate(const Spheres &spheres)
 {
-  const int count = pairs.count;
-  for (int k = 0; k < count; ++k) pairs.friction[k] = spheres.normal_friction(pairs.r[k]);
+  const int count = pairs_.count, *i_of = pairs_.i, *j_of = pairs_.j;
+  normal_friction(spheres);
   const bool rough = spheres.friction > 0;
   Pairs::Each<int> near;
   int found = 0;
   for (int k = 0; k < count; ++k) {
     near[found] = k;
-    found += (pairs.friction[k] > 0) | (rough & (pairs.r[k] < spheres.diameter));
+    found += (pairs_.friction[k] > 0) | (rough & (pairs_.r[k] < spheres.diameter));
   }
 
   const mpc::CounterRandom random{seed_, static_cast<std::uint64_t>(update->ntimestep)};
@@ -344,7 +407,7 @@ void PairDLVO::dissipate(const Spheres &spheres, Pairs &pairs)
   z.fill(0);
   if (temperature_ > 0) {
     for (int n = 0; n < found; ++n) {
-      const auto [low, high] = std::minmax(tag[pairs.i[near[n]]], tag[pairs.j[near[n]]]);
+      const auto [low, high] = std::minmax(tag[i_of[near[n]]], tag[j_of[near[n]]]);
       words[n] = random.words(mpc::Stream::Pair, low, high);
       first[n] = mpc::uniform(words[n][0]);
       second[n] = mpc::uniform(words[n][1]);
@@ -355,28 +418,39 @@ void PairDLVO::dissipate(const Spheres &spheres, Pairs &pairs)
   const double noise = std::sqrt(2 * temperature_ / update->dt);
   for (int n = 0; n < found; ++n) {
     const int k = near[n];
-    const double *vi = v[pairs.i[k]], *vj = v[pairs.j[k]];
-    const double approach = (vi[0] - vj[0]) * pairs.x[k] + (vi[1] - vj[1]) * pairs.y[k] +
-        (vi[2] - vj[2]) * pairs.z[k];
-    pairs.along[k] += noise * std::sqrt(pairs.friction[k]) * z[n] - pairs.friction[k] * approach;
-    if (rough && pairs.r[k] < spheres.diameter)
-      rub(spheres, pairs, k, temperature_ > 0 ? mpc::normals<4>(words[n]) : Normals{});
+    const double *vi = v[i_of[k]], *vj = v[j_of[k]], inverse = 1 / pairs_.r[k];
+    const Vector e{inverse * pairs_.x[k], inverse * pairs_.y[k], inverse * pairs_.z[k]};
+    const double approach =
+        (vi[0] - vj[0]) * e[0] + (vi[1] - vj[1]) * e[1] + (vi[2] - vj[2]) * e[2];
+    pairs_.pull[k] += inverse *
+        (noise * std::sqrt(pairs_.friction[k]) * z[n] - pairs_.friction[k] * approach);
+    if (rough && pairs_.r[k] < spheres.diameter)
+      rub(spheres, k, e, temperature_ > 0 ? mpc::normals<4>(words[n]) : Normals{});
+  }
+}
+
+// Of each pair, with its distance.
+[[gnu::noinline]] void PairDLVO::normal_friction(const Spheres &given)
+{
+  const Spheres spheres = given;
+  for (int k = 0; k < pairs_.count; ++k) {
+    const double r = pairs_.r[k] = std::sqrt(pairs_.square(k));
+    pairs_.friction[k] = spheres.normal_friction(r);
   }
 }
 
 // Friction of the surfaces where they touch, half way between the centres; of the noise the last
 // three.
-void PairDLVO::rub(const Spheres &spheres, const Pairs &pairs, int k, const Normals &z)
+void PairDLVO::rub(const Spheres &spheres, int k, const Vector &e, const Normals &z)
 {
-  const int i = pairs.i[k], j = pairs.j[k];
+  const int i = pairs_.i[k], j = pairs_.j[k];
   const double *vi = atom->v[i], *vj = atom->v[j], *oi = atom->omega[i], *oj = atom->omega[j];
-  const Vector<3> e{pairs.x[k], pairs.y[k], pairs.z[k]};
-  const double arm = 0.5 * pairs.r[k];
-  const Vector<3> spin{arm * (oi[0] + oj[0]), arm * (oi[1] + oj[1]), arm * (oi[2] + oj[2])};
+  const double arm = 0.5 * pairs_.r[k];
+  const Vector spin{arm * (oi[0] + oj[0]), arm * (oi[1] + oj[1]), arm * (oi[2] + oj[2])};
   const auto turn = mpc::cross(spin, e);
   const double noise = std::sqrt(2 * temperature_ / update->dt * spheres.friction);
   const double sign = atom->tag[i] < atom->tag[j] ? 1 : -1;    // along, e has it
-  Vector<3> pull;
+  Vector pull;
   double normal = 0;
   for (int a = 0; a < 3; ++a) {
     pull[a] = sign * noise * z[a + 1] - spheres.friction * (vi[a] - vj[a] - turn[a]);
@@ -389,11 +463,10 @@ void PairDLVO::rub(const Spheres &spheres, const Pairs &pairs, int k, const Norm
     torque[i][a] -= arm * twist[a];
     if (force->newton_pair || j < atom->nlocal) torque[j][a] -= arm * twist[a];
   }
-  push(i, j, pull, e.data(), pairs.r[k], 0);
+  push(i, j, pull, {pairs_.x[k], pairs_.y[k], pairs_.z[k]}, 0);
 }
 
-inline void PairDLVO::push(int i, int j, const Vector<3> &pull, const double *e, double r,
-                           double energy)
+inline void PairDLVO::push(int i, int j, const Vector &pull, const Vector &from, double energy)
 {
   double **f = atom->f;
   const int newton = force->newton_pair;
@@ -402,8 +475,8 @@ inline void PairDLVO::push(int i, int j, const Vector<3> &pull, const double *e,
     if (newton || j < atom->nlocal) f[j][a] -= pull[a];
   }
   if (evflag)
-    ev_tally_xyz(i, j, atom->nlocal, newton, energy, 0.0, pull[0], pull[1], pull[2], r * e[0],
-                 r * e[1], r * e[2]);
+    ev_tally_xyz(i, j, atom->nlocal, newton, energy, 0.0, pull[0], pull[1], pull[2], from[0],
+                 from[1], from[2]);
 }
 
 double PairDLVO::single(int, int, int itype, int jtype, double rsq, double, double, double &fforce)
@@ -411,6 +484,6 @@ double PairDLVO::single(int, int, int itype, int jtype, double rsq, double, doub
   const auto &spheres = of(itype, jtype);
   const double r = std::sqrt(rsq);
   if (r >= spheres.cutoff) return fforce = 0;
-  fforce = spheres.force(r, 1 / r) / r;
+  fforce = spheres.pull(rsq);
   return spheres.energy(r);
 }

@@ -24,6 +24,7 @@ class PairDLVO : public Pair {
 
  private:
   using Normals = std::array<double, 4>;
+  using Vector = std::array<double, 3>;
 
   struct Spheres {
     double diameter = 0;
@@ -37,44 +38,61 @@ class PairDLVO : public Pair {
     double cutoff = 0;
 
     double joint = 0, stiffness = 0;    // where the parabola ends, derived
+    double least = 0;                   // r^2 - d^2 there
     double shift = 0;                   // energy at the cutoff, with pair_modify shift yes
+    double near = 0, far = 0;    // up to where there is more than attraction, and up to where that
 
     double energy(double r) const;
-    double force(double r, double inverse) const;
+    double pull(double square) const;
+    double attraction(double square) const;
     double coulomb(double r, double inverse) const;
     double dlvo_energy(double r) const;
-    double dlvo_force(double r, double inverse) const;
+    double dlvo_force(double r) const;
     void join();
     double normal_friction(double r) const;
   };
 
-  // Pairs of two types, component by component: loops over them are vectorised.
+  // Pairs of two types; those of an atom follow each other.
+  struct Listed {
+    std::vector<int> i, j;
+  };
+
+  // Some of them, component by component: loops over them are vectorised.
   struct Pairs {
     static constexpr int MOST = 512;    // their state stays in the caches
     template <class Value> using Each = std::array<Value, MOST>;
 
-    int count = 0;
-    Each<int> i, j;
-    Each<double> x, y, z, r;    // from j to i: the way, then its direction and length
-    Each<double> along;         // force on i in that direction
-    Each<double> friction;      // of the relative velocity along it
+    int count;
+    const int *i, *j;
+    Each<double> x, y, z;     // from j to i
+    Each<double> pull;        // force on i over the distance
+    Each<double> friction;    // of the relative velocity along the line of centres
+    Each<double> r;
+
+    double square(int k) const { return x[k] * x[k] + y[k] * y[k] + z[k] * z[k]; }
   };
 
   void allocate();
-  void gather(std::size_t types, int i, const int *neighbors, int count, int eflag);
-  void act(const Spheres &, Pairs &, int eflag);
-  void repel(const Spheres &, Pairs &);
-  void dissipate(const Spheres &, Pairs &);
-  void rub(const Spheres &, const Pairs &, int k, const Normals &z);
-  void push(const Pairs &);
-  void tally(const Spheres &, const Pairs &, int eflag);
-  void push(int i, int j, const std::array<double, 3> &pull, const double *e, double r,
-            double energy);
+  bool moved() const;
+  void sort();
+  void act(const Spheres &, const Listed &, bool near, int eflag);
+  void gather(const Listed &, int first, int count);
+  void repel(const Spheres &);
+  void attract(const Spheres &);
+  void dissipate(const Spheres &);
+  void normal_friction(const Spheres &);
+  void rub(const Spheres &, int k, const Vector &e, const Normals &z);
+  void push();
+  void tally(const Spheres &, int eflag);
+  void push(int i, int j, const Vector &pull, const Vector &from, double energy);
   Spheres &of(int itype, int jtype) { return spheres_[itype * (types_ + 1) + jtype]; }
 
   int types_ = 0;
   std::vector<Spheres> spheres_;
-  std::vector<Pairs> near_;    // of each two types
+  std::vector<Listed> near_, far_;    // of each two types, sorted out of the neighbour list
+  std::vector<double> places_;        // of all atoms then
+  double margin_ = 0;                 // distance that pairs in reach were then allowed beyond it
+  Pairs pairs_;
   double cutoff_ = 0, temperature_ = 0;
   std::uint64_t seed_ = 0;
   bool dissipates_ = false, rubs_ = false;

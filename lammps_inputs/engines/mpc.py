@@ -30,7 +30,7 @@ from lammps_inputs.system import (
 
 SKIN = 0.5  # least of the neighbour list, of colloids that feel the fluid by forces [a0]
 LONGEST_SKIN = 0.85  # of others [a0]
-USUAL_LISTS = 8  # most that are built in a collision interval, unless the skin asks for more
+USUAL_LISTS = 2  # most that are built in a collision interval, unless the skin asks for more
 SLOW = 0.1  # drift of species that the fluid carries, at least [a0/t0]
 FLIGHTS = 10  # collision times of free fall that such a drift comes to, at most
 

@@ -4,6 +4,7 @@ import math
 from collections.abc import Iterator
 from dataclasses import replace
 from functools import cached_property
+from pathlib import Path
 from typing import Annotated, Any, ClassVar, Literal, Self
 
 from pydantic import BeforeValidator, Field, ValidationError, model_validator
@@ -12,7 +13,7 @@ from lammps_inputs.comparison import Laboratory
 from lammps_inputs.laboratory import suspension_rows
 from lammps_inputs.limits import SOUND, solvent_warnings
 from lammps_inputs.material import Model, Suspension
-from lammps_inputs.placement import Lattice, lattice_cells
+from lammps_inputs.placement import LastFrame, Lattice, lattice_cells
 from lammps_inputs.potentials.dlvo import Dlvo
 from lammps_inputs.potentials.harmonic_wall import HarmonicWall
 from lammps_inputs.quantities import si
@@ -158,6 +159,10 @@ class Claylike(Scene):
     )
     duration: Positive = Field(default=1000.0, description="time after equilibration [t0]")
     equilibration: NonNegative = Field(default=100.0, description="time left out [t0]")
+    start: str | None = Field(
+        default=None,
+        description="directory of a run whose last colloids it begins with; none: on a lattice",
+    )
 
     @model_validator(mode="before")
     @classmethod
@@ -309,7 +314,9 @@ class Claylike(Scene):
                 self.md_steps_per_collision,
             ),
             species=(Species("colloids", self.colloids, mass, radius, 0.4 * mass * radius**2),),
-            placement=Lattice(),
+            placement=LastFrame(str(Path(self.start) / trajectory.file))
+            if self.start
+            else Lattice(),
             interactions=(Interaction("colloids", "colloids", between),) if between else (),
             walls=walls,
             drives=(Drive("colloids", self.gravity, (0.0, 0.0, -1.0), balanced=not walls),),

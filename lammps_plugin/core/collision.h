@@ -176,7 +176,7 @@ template <int D> void scale_about(Turn<D> &turn, const Vector<D> &point, double 
 
 enum class Axes { Random, Coordinate };
 
-// The rotation of a cell, drawn from its own random numbers; angle in radians.
+// The rotation of a cell, drawn from its own mixed words; angle in radians.
 class Rotation {
  public:
   Rotation(double angle, Axes axes) : cosine_(std::cos(angle)), sine_(std::sin(angle)), axes_(axes)
@@ -188,29 +188,24 @@ class Rotation {
     }
   }
 
-  // 2D: counter-clockwise where the first uniform is below 1/2, else clockwise. Returns the cell's
-  // random numbers, of which no rotation takes the last.
-  Words draw(const CounterRandom &random, std::uint64_t cell, Turn<2> &turn) const
+  // 2D: counter-clockwise where the first uniform is below 1/2, else clockwise. The fourth is left.
+  void draw(const MixedWords &words, std::uint64_t cell, Turn<2> &turn) const
   {
-    const auto words = random.words(Stream::Rotation, cell);
-    const double sine = uniform(words[0]) < 0.5 ? sine_ : -sine_;
+    const double sine = uniform(words.word(0, cell)) < 0.5 ? sine_ : -sine_;
     turn.column[0] = pack(cosine_, sine);
     turn.column[1] = pack(-sine, cosine_);
-    return words;
   }
 
   // 3D: about an axis uniform on the sphere (3.8), or about one of +-x, +-y, +-z.
-  Words draw(const CounterRandom &random, std::uint64_t cell, Turn<3> &turn) const
+  void draw(const MixedWords &words, std::uint64_t cell, Turn<3> &turn) const
   {
-    const auto words = random.words(Stream::Rotation, cell);
     if (axes_ == Axes::Coordinate) {
-      turn = about_coordinates_[static_cast<int>(6 * uniform(words[0]))];
-      return words;
+      turn = about_coordinates_[static_cast<int>(6 * uniform(words.word(0, cell)))];
+      return;
     }
-    const double height = 2 * uniform(words[0]) - 1, part = uniform(words[1]);
+    const double height = 2 * uniform(words.word(0, cell)) - 1, part = uniform(words.word(1, cell));
     const double equator = std::sqrt(1 - height * height);
     turn = about({equator * std::cos(2 * M_PI * part), equator * std::sin(2 * M_PI * part), height});
-    return words;
   }
 
  private:

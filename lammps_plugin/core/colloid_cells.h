@@ -87,31 +87,42 @@ template <int D> class ColloidCells {
       for (int r = 0; r < stretch->length; ++r)
         entries_[--start_[stretch->cell + r]] = {stretch->colloid,
                                                  stretch->across + along_[stretch->along + r]};
+    looks_.resize(start_.size());
+    for (int cell = 0; cell < static_cast<int>(nearest_.size()); ++cell)
+      looks_[cell] = {start_[cell], nearest_[cell]};
+    looks_.back() = {total, 0};
   }
 
-  bool any(int cell) const { return nearest(cell) < std::numeric_limits<float>::infinity(); }
+  bool any(int cell) const { return only_[cell] != NOBODY; }
+
+  // Ask for what the next and begin() look at.
+  void prefetch_look(int cell) const { __builtin_prefetch(looks_.data() + cell); }
 
   // The colloid of a cell that has just one, else one of these.
   static constexpr int NOBODY = -1, SEVERAL = -2;
   int only(int cell) const { return only_[cell]; }
 
   // Square distance from a cell to the nearest place.
-  float nearest(int cell) const { return nearest_[cell]; }
+  float nearest(int cell) const { return looks_[cell].nearest; }
 
   // Ask for the list of a cell, which is far from those of others.
-  void prefetch(int cell) const { __builtin_prefetch(entries_.data() + start_[cell]); }
+  void prefetch(int cell) const { __builtin_prefetch(begin(cell)); }
+
+  // The list of a cell.
+  const Entry *begin(int cell) const { return entries_.data() + looks_[cell].start; }
+  const Entry *end(int cell) const { return begin(cell + 1); }
 
   // Colloids whose places come closer to a cell than a distance.
   template <class Visit> void each(int cell, double distance, const Visit &visit) const
   {
     const double most = distance * distance;
-    for (int e = start_[cell]; e < start_[cell + 1]; ++e)
-      if (entries_[e].square < most) visit(entries_[e].colloid);
+    for (const auto *entry = begin(cell); entry < end(cell); ++entry)
+      if (entry->square < most) visit(entry->colloid);
   }
 
   template <class Visit> void each(int cell, const Visit &visit) const
   {
-    for (int e = start_[cell]; e < start_[cell + 1]; ++e) visit(entries_[e].colloid);
+    for (const auto *entry = begin(cell); entry < end(cell); ++entry) visit(entry->colloid);
   }
 
   const Grid<D> &grid() const { return grid_; }    // as it was
@@ -125,8 +136,15 @@ template <int D> class ColloidCells {
     float across;
   };
 
+  // Of a cell, what is looked at for each particle: one line of the caches.
+  struct Look {
+    int start;    // in the entries
+    float nearest;
+  };
+
   Grid<D> grid_{{}, {}, 1.0};
-  Array<int> start_;    // of each cell in the entries
+  Array<Look> looks_;    // and the end of the entries
+  Array<int> start_;
   Array<float> nearest_;
   Array<int> only_;
   Array<Entry> entries_;

@@ -30,6 +30,13 @@ template <int D> class ForceCoupling : public Coupling<D> {
             [this](int type) { return cutoff(interactions_.at(type).sigma); }),
       field_(field), walls_(walls)
   {
+    lowest_.fill(-std::numeric_limits<double>::infinity());
+    highest_.fill(std::numeric_limits<double>::infinity());
+    if (!walls) return;
+    for (int a : walls->axes()) {
+      lowest_[a] = 0;
+      highest_[a] = walls->width(a);
+    }
   }
   ForceCoupling(const ForceCoupling &) = delete;    // what is near knows this one
 
@@ -76,10 +83,12 @@ template <int D> class ForceCoupling : public Coupling<D> {
     with_all_.assign(places, false);
     for (int a = 0; a < D; ++a)
       for (auto *values : {&x_[a], &v_[a], &acceleration_[a]}) values->resize(places);
+    int away = 0;    // along an axis without walls, if there is one: nobody is not to meet them
+    while (away < D - 1 && walls_ && walls_->across(away)) ++away;
     for (int c = 0; c < colloids; ++c)
       for (int k = spans_[c].last; k < spans_[c].end; ++k)
         for (int a = 0; a < D; ++a) {
-          x_[a][k] = near_.colloids()[c].x[a] + FAR * near_.reach(0);
+          x_[a][k] = near_.colloids()[c].x[a] + (a == away ? FAR * near_.reach(0) : 0.0);
           v_[a][k] = 0;
         }
 
@@ -175,9 +184,9 @@ template <int D> class ForceCoupling : public Coupling<D> {
 
   static double sum(const Lanes &lanes)
   {
-    double total = 0;
-    for (int l = 0; l < LANES; ++l) total += lanes[l];
-    return total;
+    static_assert(LANES == 8);    // by halves: their additions do not wait for each other
+    return ((lanes[0] + lanes[4]) + (lanes[2] + lanes[6])) +
+        ((lanes[1] + lanes[5]) + (lanes[3] + lanes[7]));
   }
 
   static bool any(const Mask &mask)
@@ -193,17 +202,13 @@ template <int D> class ForceCoupling : public Coupling<D> {
   bool evaluate(double time, const std::vector<Colloid<D>> &colloids,
                 std::vector<Push<D>> &on_colloids)
   {
-    bool fast = false;
+    Mask deep{}, quick{};
     for (std::size_t c = 0; c < colloids.size(); ++c) {
       check_allowance(colloids[c], near_.colloids()[c]);
-      auto &force = on_colloids[c].linear;
-      if (!Moving)
-        fast |= pass<false, false>(colloids[c], of_colloid_[c], spans_[c], time, force);
-      else if (bounce(spans_[c], time))
-        fast |= pass<false, true>(colloids[c], of_colloid_[c], spans_[c], time, force);
-      else
-        fast |= pass<true, true>(colloids[c], of_colloid_[c], spans_[c], time, force);
+      pass<Moving>(colloids[c], of_colloid_[c], spans_[c], time, on_colloids[c].linear, deep, quick);
     }
+    if (any(deep)) find_in_core(colloids);
+    bool fast = any(quick);
     for (const auto &pair : others_) {
       const auto &colloid = colloids[pair.colloid];
       const auto &interaction = of_colloid_[pair.colloid];
@@ -223,47 +228,49 @@ template <int D> class ForceCoupling : public Coupling<D> {
   }
 
   // The particles of a colloid in one pass over memory, by velocity Verlet; the force on the colloid.
-  // Flying: they have not flown yet.
-  template <bool Flying, bool Kicked>
-  bool pass(const Colloid<D> &colloid, const Interaction &interaction, const Span &span,
-            double time, Vector<D> &force)
+  // Deep and fast: in which lanes there is a particle in the core of it, or one that is fast.
+  template <bool Moving>
+  void pass(const Colloid<D> &colloid, const Interaction &interaction, const Span &span, double time,
+            Vector<D> &force, Mask &deep, Mask &fast)
   {
     const Lanes none{};
     const double cut = square_of(cutoff(interaction.sigma)), core = square_of(CORE * interaction.sigma);
     const double square_sigma = interaction.sigma * interaction.sigma;
+    const double scale = 24 * interaction.epsilon, half = 0.5 * time;
     const double usual = near_.usual();
     const auto centre = colloid.x;
     const auto field = field_;
     std::array<Lanes, D> total{};
-    Mask deep{}, fast{};
     for (int k = span.first; k < span.end; k += LANES) {
-      std::array<Lanes, D> v, before, separation;
+      std::array<Lanes, D> x, v, separation;    // v at half the step
+      for (int a = 0; a < D; ++a) {
+        x[a] = load(&x_[a][k]);
+        if (!Moving) continue;
+        v[a] = load(&v_[a][k]) + half * load(&acceleration_[a][k]);
+        x[a] += time * v[a];
+      }
+      if (Moving && walls_ && beyond(x)) {
+        const auto flown = bounce(k, span.last, time, {x, v});
+        x = flown.x;
+        v = flown.v;
+      }
       Lanes r2 = none, speed = none;
       for (int a = 0; a < D; ++a) {
-        Lanes x = load(&x_[a][k]);
-        if (Kicked) {
-          v[a] = load(&v_[a][k]);
-          before[a] = load(&acceleration_[a][k]);
-        }
-        if (Flying) {
-          x += time * (v[a] + 0.5 * time * before[a]);
-          v[a] += time * before[a];
-          store(&x_[a][k], x);
-        }
-        separation[a] = x - centre[a];
+        if (Moving) store(&x_[a][k], x[a]);
+        separation[a] = x[a] - centre[a];
         r2 += separation[a] * separation[a];
       }
       const Lanes inverse = 1 / r2;
       const Lanes ratio = square_sigma * inverse;
       const Lanes u = ratio * ratio * ratio;
-      Lanes strength = 24 * interaction.epsilon * (2 * u * u - u) * inverse;
+      Lanes strength = (2 * u - 1) * u * (scale * inverse);
       strength = r2 < cut ? strength : none;
       deep |= !(r2 > core);    // true for NaN
       for (int a = 0; a < D; ++a) {
         const Lanes pull = strength * separation[a], after = pull + field[a];
         total[a] += pull;
-        if (Kicked) {
-          v[a] += 0.5 * time * (after - before[a]);    // flying has added the whole of the old one
+        if (Moving) {
+          v[a] += half * after;
           speed += v[a] * v[a];
           store(&v_[a][k], v[a]);
         }
@@ -271,38 +278,42 @@ template <int D> class ForceCoupling : public Coupling<D> {
       }
       fast |= speed > usual;
     }
-    if (any(deep)) find_in_core(colloid, interaction.sigma, span);
     for (int a = 0; a < D; ++a) force[a] = -sum(total[a]);
-    return any(fast);
   }
 
-  // Whether any of a colloid's particles meets a wall in the time; then they all have flown.
-  bool bounce(const Span &span, double time)
+  // Whether any of some places is beyond a wall.
+  bool beyond(const std::array<Lanes, D> &x) const
   {
-    if (!walls_) return false;
-    int crossing = 0;
-    for (int axis : walls_->axes()) {
-      const double width = walls_->width(axis);
-      const double *x = x_[axis].data(), *v = v_[axis].data(), *a = acceleration_[axis].data();
-      for (int k = span.first; k < span.last; ++k) {
-        const double target = x[k] + time * (v[k] + 0.5 * time * a[k]);
-        crossing += (target < 0) | (target > width);
+    Mask crossing{};
+    for (int a = 0; a < D; ++a) crossing |= (x[a] < lowest_[a]) | (x[a] > highest_[a]);
+    return any(crossing);
+  }
+
+  struct Flown {
+    std::array<Lanes, D> x, v;    // v at half the step
+  };
+
+  // Where the particles at the places from k on come to, those that meet walls on their way.
+  Flown bounce(int k, int last, double time, Flown flown) const
+  {
+    for (int l = 0; l < LANES && k + l < last; ++l) {
+      Vector<D> x, v, acceleration;
+      bool crossing = false;
+      for (int a = 0; a < D; ++a) {
+        crossing |= (flown.x[a][l] < lowest_[a]) | (flown.x[a][l] > highest_[a]);
+        x[a] = x_[a][k + l];
+        v[a] = v_[a][k + l];
+        acceleration[a] = acceleration_[a][k + l];
+      }
+      if (!crossing) continue;
+      if (!fly_between<D>(*walls_, x, v, acceleration, time))
+        throw TooManyBounces{k + l}.fault(static_cast<std::uint64_t>(ids_[k + l]));
+      for (int a = 0; a < D; ++a) {
+        flown.x[a][l] = x[a];
+        flown.v[a][l] = v[a] - 0.5 * time * acceleration[a];    // flying adds the whole of it
       }
     }
-    if (crossing == 0) return false;
-    std::array<double *, D> x, v;
-    PerParticle<D> acceleration;
-    for (int a = 0; a < D; ++a) {
-      x[a] = x_[a].data();
-      v[a] = v_[a].data();
-      acceleration.values[a] = acceleration_[a].data();
-    }
-    try {
-      stream<D>(x, v, acceleration, time, walls_, span.first, span.last);
-    } catch (const TooManyBounces &bounces) {
-      throw bounces.fault(static_cast<std::uint64_t>(ids_[bounces.index]));
-    }
-    return true;
+    return flown;
   }
 
   bool is_fast(int k) const
@@ -341,13 +352,14 @@ template <int D> class ForceCoupling : public Coupling<D> {
     throw Fault(text);
   }
 
-  void find_in_core(const Colloid<D> &colloid, double sigma, const Span &span) const
+  void find_in_core(const std::vector<Colloid<D>> &colloids) const
   {
-    for (int k = span.first; k < span.last; ++k) {
-      double r2 = 0;
-      for (int a = 0; a < D; ++a) r2 += square_of(x_[a][k] - colloid.x[a]);
-      if (!(r2 > square_of(CORE * sigma))) fault_in_core(k, colloid, r2);
-    }
+    for (std::size_t c = 0; c < colloids.size(); ++c)
+      for (int k = spans_[c].first; k < spans_[c].last; ++k) {
+        double r2 = 0;
+        for (int a = 0; a < D; ++a) r2 += square_of(x_[a][k] - colloids[c].x[a]);
+        if (!(r2 > square_of(CORE * of_colloid_[c].sigma))) fault_in_core(k, colloids[c], r2);
+      }
   }
 
   [[noreturn]] void fault_in_core(int k, const Colloid<D> &colloid, double r2) const
@@ -366,6 +378,7 @@ template <int D> class ForceCoupling : public Coupling<D> {
   NearFluid<D> near_;
   Vector<D> field_;
   const Walls<D> *walls_;
+  Vector<D> lowest_, highest_;             // coordinates between the walls
   std::vector<Interaction> of_colloid_;    // seen as the interval began
 
   // what was taken, by places: those of one colloid behind each other

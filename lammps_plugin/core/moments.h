@@ -3,8 +3,10 @@
 #pragma once
 
 #include "fluid.h"
+#include "lanes.h"
 #include "processes.h"
 
+#include <algorithm>
 #include <cmath>
 
 namespace mpc {
@@ -18,14 +20,14 @@ template <int D> struct Moments {
 template <int D, class Real> Moments<D> moments(const Fluid<D, Real> &fluid, Processes &processes)
 {
   std::array<double, 4 * D + 1> sums{};    // of the powers 1 to 4 of each component; particles
-  for (int i = 0; i < fluid.size(); ++i)
-    for (int a = 0; a < D; ++a) {
-      const double v = fluid.v[a][i], square = v * v;
-      sums[4 * a] += v;
-      sums[4 * a + 1] += square;
-      sums[4 * a + 2] += square * v;
-      sums[4 * a + 3] += square * square;
-    }
+  for (int a = 0; a < D; ++a) {
+    const auto *velocities = fluid.v[a].data();
+    const auto powers = sum_in_lanes<4>(fluid.size(), [=](int i) {
+      const double v = velocities[i], square = v * v;
+      return std::array<double, 4>{v, square, square * v, square * square};
+    });
+    std::copy(powers.begin(), powers.end(), &sums[4 * a]);
+  }
   sums[4 * D] = fluid.size();
   processes.sum(sums.data(), 4 * D + 1);
 

@@ -58,15 +58,15 @@ template <int D> class NearFluid {
     allowance_ = interval_ * speed;
     candidates_.clear();
     others_.clear();
-    ranges_.clear();
     cutoffs_.clear();
+    square_reaches_.clear();
     for (int a = 0; a < D; ++a) centres_[a].clear();
     cells_.begin(grid);
     for (int a = 0; a < D; ++a) turns_per_length_[a] = grid.periodic[a] ? 1 / grid.box[a] : 0.0;
     for (int c = 0; c < static_cast<int>(colloids.size()); ++c) {
       const double cutoff = cutoff_(colloids[c].type), pairing = reach(cutoff) + allowance_;
-      ranges_.push_back({cutoff, square_of(pairing)});
       cutoffs_.push_back(cutoff);
+      square_reaches_.push_back(square_of(pairing));
       for (int a = 0; a < D; ++a) centres_[a].push_back(colloids[c].x[a]);
       cells_.enter(c, colloids[c].x, pairing);    // at all cells with what could be paired with it
     }
@@ -76,20 +76,11 @@ template <int D> class NearFluid {
   template <class Real> void take(const Fluid<D, Real> &fluid, int begin, int end)
   {
     if (colloids_.empty()) return;
-    listed_.resize(end - begin);
-    int listed = 0;    // lists without branches: who is in them follows no pattern
-    for (int i = begin; i < end; ++i) {
-      double speed = 0;
-      for (int a = 0; a < D; ++a) speed += square_of(fluid.v[a][i]);
-      listed_[listed] = i;
-      listed += cells_.any(fluid.cell[i]) | is_fast(speed);
-    }
-    within_.resize(listed);
-    for (int k = 0; k < listed; ++k) within_[k] = within(fluid, listed_[k]);
-    for (int k = 0; k < listed; ++k) {
-      const int i = listed_[k], colloid = cells_.only(fluid.cell[i]);
-      if (!within_[k]) continue;
-      if (colloid < 0 || within_[k] == FAST)
+    list(fluid, begin, end);
+    look(fluid);
+    for (int k = 0; k < listed_count_; ++k) {
+      const int i = listed_[k], colloid = colloid_[k];
+      if (colloid < 0)
         consider(fluid, i);
       else
         candidates_.push_back({i, colloid, seen_from(fluid.particle(i), colloid)});
@@ -106,30 +97,71 @@ template <int D> class NearFluid {
   static constexpr double CHECKED_SPEED = 6.0;    // thermal speeds; e^-18 are faster
   static constexpr double PAIR_SPEED = 7.0;       // room for what one step adds to the checked
 
-  struct Range {
-    double cutoff, square_reach;    // of the force, and of pairing squared
-  };
-
   static double square_of(double a) { return a * a; }
 
   double flight_speed(double speed) const { return speed + gain_; }
 
-  // Whether a particle may come within the cutoff of the only colloid of its cell; else FAR_OFF. FAST,
-  // and NEAR where there are several, must be looked at more closely.
-  static constexpr char FAR_OFF = 0, NEAR = 1, FAST = 2;
-
-  template <class Real> char within(const Fluid<D, Real> &fluid, int i) const
+  // List the particles that have colloids near their cells, and the fast ones. Without branches: who is
+  // in the list follows no pattern.
+  template <class Real> void list(const Fluid<D, Real> &fluid, int begin, int end)
   {
-    const int only = cells_.only(fluid.cell[i]), c = only < 0 ? 0 : only;
-    double r2 = 0, speed = 0;
-    for (int a = 0; a < D; ++a) {
-      const double separation = fluid.position(a, i) - centres_[a][c];
-      r2 += square_of(separation - turns(a, separation) * cells_.grid().box[a]);
-      speed += square_of(fluid.v[a][i]);
+    const double usual = usual_;
+    int fast = 0;
+    for (int i = begin; i < end; ++i) fast += square_speed(fluid, i) > usual;
+    listed_.resize(end - begin);
+    int *__restrict listed = listed_.data();
+    int count = 0;
+    for (int i = begin; i < end; ++i) {
+      listed[count] = i;
+      count += cells_.any(fluid.cell[i]);
+      if (fast > 0 && is_fast(square_speed(fluid, i)) && !cells_.any(fluid.cell[i])) ++count;
     }
-    const double travel = allowance_ + interval_ * flight_speed(std::sqrt(speed));
-    const char near = (only < 0) | (r2 < square_of(cutoffs_[c] + travel)) ? NEAR : FAR_OFF;
-    return is_fast(speed) ? FAST : near;
+    listed_count_ = count;
+  }
+
+  // Keep those of the list that may come within the cutoff of the only colloid of their cell, or
+  // whose cell has several, or that are fast: these must be looked at more closely.
+  template <class Real> void look(const Fluid<D, Real> &fluid)
+  {
+    const int count = listed_count_;
+    for (auto *of_each : {&speeds_, &squares_}) of_each->assign(count, 0);
+    for (auto *of_each : {&colloid_, &nearest_, &within_}) of_each->resize(count);
+    int *__restrict listed = listed_.data(), *__restrict colloid = colloid_.data();
+    int *__restrict nearest = nearest_.data(), *__restrict within = within_.data();
+    double *__restrict speeds = speeds_.data(), *__restrict r2 = squares_.data();
+    for (int k = 0; k < count; ++k) {
+      colloid[k] = cells_.only(fluid.cell[listed[k]]);
+      nearest[k] = colloid[k] < 0 ? 0 : colloid[k];
+    }
+    for (int a = 0; a < D; ++a) {
+      const double *centre = centres_[a].data();
+      const double size = cells_.grid().box[a], per_size = turns_per_length_[a];
+      for (int k = 0; k < count; ++k) {
+        const double separation = fluid.position(a, listed[k]) - centre[nearest[k]];
+        r2[k] += square_of(separation - std::rint(separation * per_size) * size);
+        speeds[k] += square_of(fluid.v[a][listed[k]]);
+      }
+    }
+    const double *cutoffs = cutoffs_.data(), usual = usual_, interval = interval_;
+    const double least = allowance_ + interval_ * gain_;
+    for (int k = 0; k < count; ++k) {
+      const double reach = cutoffs[nearest[k]] + least + interval * std::sqrt(speeds[k]);
+      within[k] = (colloid[k] < 0) | (r2[k] < square_of(reach)) | (speeds[k] > usual);
+    }
+    int kept = 0;
+    for (int k = 0; k < count; ++k) {
+      listed[kept] = listed[k];
+      colloid[kept] = speeds[k] > usual ? ColloidCells<D>::SEVERAL : colloid[k];
+      kept += within[k];
+    }
+    listed_count_ = kept;
+  }
+
+  template <class Real> static double square_speed(const Fluid<D, Real> &fluid, int i)
+  {
+    double speed = 0;
+    for (int a = 0; a < D; ++a) speed += square_of(fluid.v[a][i]);
+    return speed;
   }
 
   // The image that is nearest to a colloid.
@@ -160,11 +192,10 @@ template <int D> class NearFluid {
         const double separation = particle.x[a] - colloids_[c].x[a];
         r2 += square_of(fast ? separation : separation - turns(a, separation) * grid.box[a]);
       }
-      const auto &range = ranges_[c];
-      const bool paired = r2 < range.square_reach;
+      const bool paired = r2 < square_reaches_[c];
       if (!paired && !fast) return;
       const double travel = allowance_ + interval_ * flight_speed(std::sqrt(square_speed));
-      within |= r2 < square_of(range.cutoff + travel);
+      within |= r2 < square_of(cutoffs_[c] + travel);
       if (!paired) return;
       if (nearest >= 0) others_.push_back({number, r2 < least ? nearest : c});
       if (r2 < least) {
@@ -205,13 +236,14 @@ template <int D> class NearFluid {
 
   ColloidCells<D> cells_;    // as the interval began
   std::vector<Colloid<D>> colloids_;
-  std::vector<Range> ranges_;            // of each colloid
-  std::vector<double> cutoffs_;          // so that many are read at once
+  std::vector<double> cutoffs_, square_reaches_;    // of each colloid's force, and of pairing
   std::array<std::vector<double>, D> centres_;
   Vector<D> turns_per_length_;           // 0 across walls
   double allowance_ = 0;
-  std::vector<int> listed_;
-  std::vector<char> within_;             // of those listed
+  std::vector<int> listed_;              // particles, the first so many of them
+  int listed_count_ = 0;
+  std::vector<double> speeds_, squares_;    // of those listed: squares of speed and distance
+  std::vector<int> colloid_, nearest_, within_;
   std::vector<Candidate> candidates_;
   std::vector<Pair> others_;
 };

@@ -72,20 +72,6 @@ inline double logarithm(double w)
   return exponent * M_LN2 + 2 * s * series;
 }
 
-// e^x for |x| < 700, in the same way; beyond it is no number of any use.
-inline double exponential(double x)
-{
-  const int exponent = static_cast<int>(x * M_LOG2E + 1024.5) - 1024;    // the nearest
-  const double y = (x - exponent * 0x1.62e42feep-1) - exponent * 0x1.a39ef35793c76p-33;    // ln 2
-  double series = 1;
-  for (int k = 13; k > 0; --k) series = 1 + series * y * (1.0 / k);
-  const std::uint64_t bits = static_cast<std::uint64_t>(static_cast<std::int64_t>(exponent) + 1023)
-      << 52;
-  double power;
-  std::memcpy(&power, &bits, sizeof power);
-  return power * series;
-}
-
 // 1 / k! for k = 0 ... 17.
 constexpr std::array<double, 18> inverse_factorials()
 {
@@ -93,6 +79,21 @@ constexpr std::array<double, 18> inverse_factorials()
   double factorial = 1;    // exact: all are below 2^53
   for (int k = 1; k < 18; ++k) inverses[k] = 1 / (factorial *= k);
   return inverses;
+}
+
+// e^x for |x| < 700, in the same way; beyond it is no number of any use.
+inline double exponential(double x)
+{
+  const int exponent = static_cast<int>(x * M_LOG2E + 1024.5) - 1024;    // the nearest
+  const double y = (x - exponent * 0x1.62e42feep-1) - exponent * 0x1.a39ef35793c76p-33;    // ln 2
+  constexpr auto inverse = inverse_factorials();
+  double series = inverse[13];
+  for (int k = 12; k >= 0; --k) series = inverse[k] + series * y;
+  const std::uint64_t bits = static_cast<std::uint64_t>(static_cast<std::int64_t>(exponent) + 1023)
+      << 52;
+  double power;
+  std::memcpy(&power, &bits, sizeof power);
+  return power * series;
 }
 
 inline std::array<double, 2> cosine_and_sine_of_turn(double u)
@@ -131,6 +132,24 @@ template <int count> std::array<double, 4> normals(const Words &words)
   return z;
 }
 
+// Number `number` of SplitMix64 (Steele, Lea and Flood, OOPSLA 2014), from 0 on.
+inline std::uint64_t split_mix(std::uint64_t seed, std::uint64_t number)
+{
+  std::uint64_t z = seed + (number + 1) * 0x9E3779B97F4A7C15u;
+  z = (z ^ z >> 30) * 0xBF58476D1CE4E5B9u;
+  z = (z ^ z >> 27) * 0x94D049BB133111EBu;
+  return z ^ z >> 31;
+}
+
+// Of a stream of which every item needs words: word k of item i is number i of SplitMix64 from key_k,
+// the four keys a block of Philox. One for each item would take longer than all else that is done to
+// a cell's velocities, or to a particle.
+struct MixedWords {
+  Words keys;
+
+  std::uint64_t word(int k, std::uint64_t item) const { return split_mix(keys[k], item); }
+};
+
 // The random numbers of one collision.
 struct CounterRandom {
   std::uint64_t seed;
@@ -140,6 +159,8 @@ struct CounterRandom {
   {
     return philox({item + 1, collision, block, 0}, seed, static_cast<std::uint64_t>(stream));
   }
+
+  MixedWords mixed(Stream stream) const { return {words(stream, 0)}; }
 };
 
 }    // namespace mpc

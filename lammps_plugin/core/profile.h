@@ -2,7 +2,7 @@
 
 #pragma once
 
-#include "fluid.h"
+#include "collision.h"
 #include "processes.h"
 
 namespace mpc {
@@ -18,20 +18,22 @@ std::vector<Layer> layers(const Fluid<D, Real> &fluid, const Grid<D> &grid, int 
                           Processes &processes)
 {
   constexpr int width = D + 2;    // momentum, squares, count
-  std::vector<double> sums(bins * width);
+  constexpr int copies = 4;       // of a sum: particles of a layer often follow each other
+  std::vector<std::array<double, width>> of(copies * bins);
   const double per_depth = bins / grid.box[1];
   for (int i = 0; i < fluid.size(); ++i) {
     const int bin = std::min(static_cast<int>(fluid.position(1, i) * per_depth), bins - 1);
-    double *sum = &sums[bin * width];
-    double squares = 0;
+    auto &sum = of[copies * bin + i % copies];
     for (int a = 0; a < D; ++a) {
       const double v = fluid.v[a][i];
       sum[a] += v;
-      squares += v * v;
+      sum[D] += v * v;
     }
-    sum[D] += squares;
     sum[D + 1] += 1;
   }
+  std::vector<double> sums(bins * width);
+  for (int k = 0; k < copies * bins; ++k)
+    for (int n = 0; n < width; ++n) sums[k / copies * width + n] += of[k][n];
   processes.sum(sums.data(), bins * width);
 
   std::vector<Layer> layers(bins);

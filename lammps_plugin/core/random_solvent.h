@@ -21,16 +21,9 @@ template <int D> class RandomSolvent {
   virtual void collect(const Fluid<D> &, int /*begin*/, int /*end*/) {}    // the velocities of before
   virtual void share(Processes &) {}
   virtual void redraw(Fluid<D> &, int begin, int end) const = 0;
-};
 
-// Number `number` of SplitMix64 (Steele, Lea and Flood, OOPSLA 2014), from 0 on.
-inline std::uint64_t split_mix(std::uint64_t seed, std::uint64_t number)
-{
-  std::uint64_t z = seed + (number + 1) * 0x9E3779B97F4A7C15u;
-  z = (z ^ z >> 30) * 0xBF58476D1CE4E5B9u;
-  z = (z ^ z >> 27) * 0x94D049BB133111EBu;
-  return z ^ z >> 31;
-}
+  virtual double bytes() const { return 0; }
+};
 
 // A random permutation of 0 ... p - 1, p the smallest prime that is not below a count of at most 2^32:
 // i -> (factor i + term) mod p, factor and term random. It is one of 0 ... count - 1 when the few
@@ -132,14 +125,14 @@ template <int D> class ShuffledSolvent : public RandomSolvent<D> {
     }
   }
 
+  double bytes() const override { return all_.capacity() * 1.0 * sizeof(Pack<D>); }
+
  private:
   Permutation permutation_{1};
   Array<Pack<D>> all_;    // of all processes, by number
 };
 
-// All velocities are drawn anew from the Maxwell distribution. Word k of particle i is number i of
-// SplitMix64 from key_k, the four keys a block of Philox: one for each particle would take longer than
-// all else that the particle does.
+// All velocities are drawn anew from the Maxwell distribution, by mixed words of the particles.
 template <int D> class BathSolvent : public RandomSolvent<D> {
  public:
   explicit BathSolvent(double temperature) : speed_(std::sqrt(temperature)) {}
@@ -148,7 +141,7 @@ template <int D> class BathSolvent : public RandomSolvent<D> {
 
   void begin(const Fluid<D> &, const CounterRandom &random, double) override
   {
-    keys_ = random.words(Stream::Bath, 0);
+    words_ = random.mixed(Stream::Bath);
   }
 
   // In blocks, whose loops are vectorised.
@@ -162,7 +155,7 @@ template <int D> class BathSolvent : public RandomSolvent<D> {
       fluid.numbers(first, count, numbers.data());
       for (int k = 0; k < D + D % 2; ++k)    // normals come in pairs
         for (int i = 0; i < count; ++i)
-          u[k][i] = uniform(split_mix(keys_[k], numbers[i]));
+          u[k][i] = uniform(words_.word(k, numbers[i]));
       for (int k = 0; k < D; k += 2)
         for (int i = 0; i < count; ++i) {
           const auto pair = normal_pair(u[k][i], u[k + 1][i]);
@@ -176,7 +169,7 @@ template <int D> class BathSolvent : public RandomSolvent<D> {
 
  private:
   double speed_;
-  Words keys_{};
+  MixedWords words_{};
 };
 
 }    // namespace mpc

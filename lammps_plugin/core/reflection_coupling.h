@@ -98,12 +98,22 @@ template <int D> class ReflectionCoupling : public Coupling<D> {
     int listed = 0;    // a list without branches: who is in it follows no pattern
     for (int k = 0; k < count; ++k) {
       const int cell = fluid.cell[begin + k];
+      cells_.prefetch_look(std::max(fluid.cell[begin + std::min(k + AHEAD, count - 1)], 0));
       listed_[listed] = begin + k;
       listed += (cell >= 0) & (within_[k] > cells_.nearest(cell >= 0 ? cell : 0));
     }
+    candidates_.count = 0;
     for (int k = 0; k < listed; ++k) {
       const int i = listed_[k];
       cells_.prefetch(fluid.cell[listed_[std::min(k + AHEAD, listed - 1)]]);
+      pair_up(fluid.particle(i), i, fluid.cell[i], within_[i - begin]);
+    }
+    may_have_met();
+    int last = -1;
+    for (int c = 0; c < candidates_.count; ++c) {
+      const int i = candidates_.particle[c];
+      if (!candidates_.near[c] || i == last) continue;
+      last = i;
       const Flight<D> flight{fluid.particle(i), interval_, 0};
       const auto contact = find(flight, fluid.cell[i]);
       if (contact.colloid < 0) continue;
@@ -174,6 +184,76 @@ template <int D> class ReflectionCoupling : public Coupling<D> {
     Vector<D> v;
     Spin<D> spin;
   };
+
+  // Particles and colloids that they may have met, component by component: loops over them are
+  // vectorised.
+  struct Candidates {
+    int count = 0;
+    std::array<std::vector<double>, D> from, v;    // of the particle, relative to the colloid
+    std::vector<double> square;                    // of the radius
+    std::vector<int> particle, near;
+
+    void make_room(std::size_t size)
+    {
+      if (size <= particle.size()) return;
+      size *= 2;
+      for (auto *each : {&from, &v})
+        for (auto &components : *each) components.resize(size);
+      square.resize(size);
+      particle.resize(size);
+      near.resize(size);
+    }
+  };
+
+  // A particle, at the end of an interval, and the colloids within a square distance of its cell.
+  void pair_up(const Particle<D> &p, int index, int cell, double within)
+  {
+    auto &all = candidates_;
+    Vector<D> mean;
+    for (int a = 0; a < D; ++a) mean[a] = p.v[a] - 0.5 * interval_ * field_[a];
+    const auto *entry = cells_.begin(cell), *end = cells_.end(cell);
+    all.make_room(all.count + (end - entry));
+    for (; entry < end; ++entry) {
+      const auto &sphere = spheres_[entry->colloid];
+      for (int a = 0; a < D; ++a) {
+        all.from[a][all.count] = p.x[a] - sphere.x[a];
+        all.v[a][all.count] = mean[a] - sphere.v[a];
+      }
+      all.square[all.count] = sphere.radius * sphere.radius;
+      all.particle[all.count] = index;
+      all.count += entry->square < within;
+    }
+  }
+
+  // Which of them are inside, or came closer than the radius on their way: find() looks closer.
+  void may_have_met()
+  {
+    auto &all = candidates_;
+    const double flown = placement_ == Placement::Entry ? interval_ * (1 + 1e-6) : 0.0;
+    std::array<const double *, D> from, velocity;
+    for (int a = 0; a < D; ++a) {
+      from[a] = all.from[a].data();
+      velocity[a] = all.v[a].data();
+    }
+    const Vector<D> box = cells_.grid().box, per_length = per_length_;
+    const double *radius = all.square.data();
+    int *near = all.near.data();
+    const int count = all.count;
+    for (int c = 0; c < count; ++c) {
+      double approach = 0, speed = 0, distance = 0;
+      for (int a = 0; a < D; ++a) {
+        const double v = velocity[a][c];
+        double apart = from[a][c];
+        apart -= box[a] * std::rint(apart * per_length[a]);
+        approach += v * apart;
+        speed += v * v;
+        distance += apart * apart;
+      }
+      const double inside = radius[c] - distance;
+      near[c] = (inside > 0) | ((approach > 0) & (approach * approach + speed * inside > 0) &
+                                (approach < flown * speed));
+    }
+  }
 
   // How far from the place of a colloid it may end who has met it.
   double distance(double speed, double flown) const
@@ -409,6 +489,7 @@ template <int D> class ReflectionCoupling : public Coupling<D> {
   ColloidCells<D> cells_;
   std::vector<int> listed_;
   std::vector<double> within_;
+  Candidates candidates_;
   std::vector<Announced> announced_, decided_;
   std::size_t next_ = 0;    // of those decided
   CounterRandom random_{0, 0};

@@ -14,6 +14,7 @@
 #include "coupling.h"
 #include "double.h"
 #include "flow.h"
+#include "lanes.h"
 #include "migration.h"
 #include "moments.h"
 #include "profile.h"
@@ -164,8 +165,11 @@ template <int D, class Real = double> class Solver : public AnySolver<D> {
   {
     turn();
     Vector<D> total{};
-    for (int a = 0; a < D; ++a)
-      for (double component : fluid_.v[a]) total[a] += component;
+    for (int a = 0; a < D; ++a) {
+      const auto *v = fluid_.v[a].data();
+      const auto term = [=](int i) { return std::array<double, 1>{v[i]}; };
+      total[a] = sum_in_lanes<1>(fluid_.size(), term)[0];
+    }
     processes_.sum(total.data(), D);
     return total;
   }
@@ -240,7 +244,8 @@ template <int D, class Real = double> class Solver : public AnySolver<D> {
   double memory() const override
   {
     return fluid_.bytes() + sums_.bytes() + turns_.capacity() * 1.0 * sizeof(KeptTurn) +
-        exact_turns_.capacity() * 1.0 * sizeof(Turn<D>) + tiles_.bytes();
+        exact_turns_.capacity() * 1.0 * sizeof(Turn<D>) + tiles_.bytes() +
+        (method_.random_solvent ? method_.random_solvent->bytes() : 0);
   }
 
  private:
@@ -527,16 +532,19 @@ template <int D, class Real = double> class Solver : public AnySolver<D> {
   void make_turns(const CounterRandom &random)
   {
     cut_.clear();
+    const auto words = random.mixed(Stream::Rotation);
     const auto *walls = method_.walls.get();
+    const bool alike = walls && !walls->across(0);    // all cells side by side along the first axis
+    Cut<D> cut;
     const auto make = [&](int cell, const std::array<int, D> &rows, Turn<D> &turn) {
-      const auto words = method_.rotation.draw(random, grid_.number(rows), turn);
+      const auto number = grid_.number(rows);
+      method_.rotation.draw(words, number, turn);
       fix_point<D>(turn, sums_.mean(cell));
-      if (!walls) return words;
-      const auto cut = walls->cutting(grid_, rows);
-      if (cut.count == 0) return words;
-      fix_point<D>(turn, walls->mean_of_cut(cut, sums_, cell, random, grid_.number(rows)));
+      if (!walls) return;
+      if (!alike || rows[0] == grid_.lower[0]) cut = walls->cutting(grid_, rows);
+      if (cut.count == 0) return;
+      fix_point<D>(turn, walls->mean_of_cut(cut, sums_, cell, random, number));
       cut_.push_back({cell, cut});
-      return words;
     };
     grid_.each_cell([&](int cell, const std::array<int, D> &rows) {
       if constexpr (!single) {
@@ -545,8 +553,8 @@ template <int D, class Real = double> class Solver : public AnySolver<D> {
         make(cell, rows, exact_turns_[cell]);
       } else {
         Turn<D> turn;
-        const auto words = make(cell, rows, turn);
-        turns_[cell] = {turn, words[3] & FINER};
+        make(cell, rows, turn);
+        turns_[cell] = {turn, words.word(3, grid_.number(rows)) & FINER};
       }
     });
   }

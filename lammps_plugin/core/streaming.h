@@ -79,45 +79,55 @@ struct TooManyBounces {
   }
 };
 
+// Of the particles first ... last - 1 the states of those that meet walls in the time, at its end.
+template <int D, class Acceleration>
+void bounce(const std::array<double *, D> &positions, const std::array<double *, D> &velocities,
+            const Acceleration &acceleration, double time, const Walls<D> &walls, int first, int last,
+            std::vector<std::pair<int, std::array<Vector<D>, 2>>> &bounced)
+{
+  int crossing = 0;
+  for (int axis : walls.axes()) {
+    const double width = walls.width(axis);
+    const double *__restrict y = positions[axis];
+    const double *__restrict vy = velocities[axis];
+    for (int i = first; i < last; ++i) {
+      const double target = y[i] + time * (vy[i] + 0.5 * time * acceleration(axis, i));
+      crossing += (target < 0) | (target > width);
+    }
+  }
+  for (int i = first; crossing > 0; ++i) {
+    int faces = 0;
+    for (int axis : walls.axes()) {
+      const double target = positions[axis][i] +
+          time * (velocities[axis][i] + 0.5 * time * acceleration(axis, i));
+      faces += (target < 0) | (target > walls.width(axis));
+    }
+    if (faces == 0) continue;
+    crossing -= faces;
+    Vector<D> x, v, a;
+    for (int d = 0; d < D; ++d) {
+      x[d] = positions[d][i];
+      v[d] = velocities[d][i];
+      a[d] = acceleration(d, i);
+    }
+    if (!fly_between<D>(walls, x, v, a, time)) throw TooManyBounces{i};
+    bounced.push_back({i, {x, v}});
+  }
+}
+
 // Move particles begin ... end - 1 for a time, between walls if there are any (3.3, 3.51).
 template <int D, class Acceleration>
 void stream(const std::array<double *, D> &positions, const std::array<double *, D> &velocities,
             const Acceleration &acceleration, double time, const Walls<D> *walls, int begin,
             int end)
 {
+  constexpr int FEW = 64;    // particles, to look among for the one that meets a wall
   static thread_local std::vector<std::pair<int, std::array<Vector<D>, 2>>> bounced;
   bounced.clear();
-  if (walls) {
-    const auto beyond = [&](int axis, int i) {
-      const double target = positions[axis][i] +
-          time * (velocities[axis][i] + 0.5 * time * acceleration(axis, i));
-      return (target < 0) | (target > walls->width(axis));
-    };
-    int crossing = 0;
-    for (int axis : walls->axes()) {
-      const double width = walls->width(axis);
-      const double *__restrict y = positions[axis];
-      const double *__restrict vy = velocities[axis];
-      for (int i = begin; i < end; ++i) {
-        const double target = y[i] + time * (vy[i] + 0.5 * time * acceleration(axis, i));
-        crossing += (target < 0) | (target > width);
-      }
-    }
-    for (int i = begin; crossing > 0; ++i) {
-      int faces = 0;
-      for (int axis : walls->axes()) faces += beyond(axis, i);
-      if (faces == 0) continue;
-      crossing -= faces;
-      Vector<D> x, v, a;
-      for (int d = 0; d < D; ++d) {
-        x[d] = positions[d][i];
-        v[d] = velocities[d][i];
-        a[d] = acceleration(d, i);
-      }
-      if (!fly_between<D>(*walls, x, v, a, time)) throw TooManyBounces{i};
-      bounced.push_back({i, {x, v}});
-    }
-  }
+  if (walls)
+    for (int first = begin; first < end; first += FEW)
+      bounce<D>(positions, velocities, acceleration, time, *walls, first,
+                std::min(first + FEW, end), bounced);
   for (int d = 0; d < D; ++d) {
     double *__restrict x = positions[d];
     double *__restrict v = velocities[d];

@@ -7,6 +7,8 @@
 
 #include "collision.h"
 
+#include <algorithm>
+
 namespace mpc {
 
 struct Face {
@@ -36,6 +38,7 @@ template <int D> class Walls {
   // The axes that they stand across, and their distance.
   const std::vector<int> &axes() const { return axes_; }
   double width(int axis) const { return width_[axis]; }
+  bool across(int axis) const { return std::count(axes_.begin(), axes_.end(), axis) > 0; }
 
   Cut<D> cutting(const Grid<D> &grid, const std::array<int, D> &rows) const
   {

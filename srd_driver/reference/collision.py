@@ -12,7 +12,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from lammps_inputs.system import Array, Rotation
-from srd_driver.reference.counter_random import CounterRandom, Stream
+from srd_driver.reference.counter_random import CounterRandom, Stream, uniform
 
 Indices = NDArray[np.intp]
 
@@ -123,12 +123,12 @@ def collide(
 
 def signs(random: CounterRandom, cells: int) -> Array:
     """2D: +1 (counter-clockwise) or -1 for each cell, as its first uniform is below 1/2."""
-    return np.where(random.uniform(Stream.ROTATION, cells)[0] < 0.5, 1.0, -1.0)
+    return np.where(uniform(random.mixed(Stream.ROTATION, cells))[0] < 0.5, 1.0, -1.0)
 
 
 def random_axes(random: CounterRandom, cells: int) -> Array:
     """A unit vector for each cell, uniform on the sphere (3.8), from its first two uniforms."""
-    s1, s2 = random.uniform(Stream.ROTATION, cells)[:2]
+    s1, s2 = uniform(random.mixed(Stream.ROTATION, cells))[:2]
     theta1, theta2 = 2 * s1 - 1, 2 * np.pi * s2
     equator = np.sqrt(1 - theta1**2)
     return np.stack([equator * np.cos(theta2), equator * np.sin(theta2), theta1])
@@ -139,7 +139,7 @@ def coordinate_axes(random: CounterRandom, cells: int) -> Array:
 
     Turning by 90 degrees about them gives the six rotations of hecht-2005.
     """
-    choice = (6 * random.uniform(Stream.ROTATION, cells)[0]).astype(np.intp)
+    choice = (6 * uniform(random.mixed(Stream.ROTATION, cells))[0]).astype(np.intp)
     axes = np.array([[1.0, -1, 0, 0, 0, 0], [0, 0, 1, -1, 0, 0], [0, 0, 0, 0, 1, -1]])
     drawn: Array = np.take(axes, choice, axis=1)
     return drawn

@@ -25,11 +25,11 @@ class Stream(enum.IntEnum):
     """Second key of the generator. The initial state has 0, see `lammps_inputs.initial_state`."""
 
     SHIFT = 1  # item 0: one uniform per axis
-    ROTATION = 2  # item = cell: what turns its velocities
+    ROTATION = 2  # mixed words of cells: what turns their velocities
     WALL = 3  # item = cell: normals of the virtual particles
     THERMOSTAT = 4  # item = cell (Monte Carlo, Maxwell-Boltzmann) or particle (Andersen)
     SHUFFLE = 5  # items 0, 1: keys of the eight rounds of the permutation
-    BATH = 6  # item = particle: normals of its new velocity
+    BATH = 6  # mixed words of particles: normals of their new velocities
     REFLECTION = 8  # item = particle, block = contact: its velocity after a contact with a colloid
     PAIR = 9  # step of molecular dynamics, item and block the lower and the higher atom number
 
@@ -58,6 +58,15 @@ class CounterRandom:
         words: Words = np.random.Philox(key=[self.seed, stream], counter=counter).random_raw(4)
         return words
 
+    def mixed(self, stream: Stream, items: int) -> Words:
+        """Words of items 0 ... items - 1 of a stream of which every item needs some, (4, items).
+
+        Word k of item i is number i of SplitMix64 from the seed key_k. The keys are the block of
+        item 0: seeds of their own for each collision. A block of Philox for each cell or particle
+        would take longer than all else that is done to it.
+        """
+        return split_mix(self.words(stream, 1), np.arange(items, dtype=np.uint64))
+
     def uniform(self, stream: Stream, items: int, block: int = 0) -> Array:
         """Four uniforms in [0, 1) for each item, shape (4, items): (word >> 11) 2^-53."""
         return uniform(self.words(stream, items, block))
@@ -65,6 +74,15 @@ class CounterRandom:
     def normal(self, stream: Stream, items: int, block: int = 0) -> Array:
         """Four standard normals for each item, shape (4, items), by `box_muller`."""
         return box_muller(self.uniform(stream, items, block))
+
+
+def split_mix(seeds: Words, numbers: Words) -> Words:
+    """Numbers 0, 1, ... of SplitMix64 (Steele, Lea and Flood, OOPSLA 2014), modulo 2^64."""
+    z = seeds + (numbers + np.uint64(1)) * np.uint64(0x9E3779B97F4A7C15)
+    z = (z ^ (z >> np.uint64(30))) * np.uint64(0xBF58476D1CE4E5B9)
+    z = (z ^ (z >> np.uint64(27))) * np.uint64(0x94D049BB133111EB)
+    words: Words = z ^ (z >> np.uint64(31))
+    return words
 
 
 def uniform(words: Words) -> Array:

@@ -54,20 +54,8 @@ def bath(velocities: Array, random: CounterRandom) -> None:
     """Draw all velocities anew from the Maxwell distribution at kBT = m_f = 1, in place.
 
     Each component has the standard deviation sqrt(kBT / m_f), which the paper calls the variance.
-    Particle i takes the first d normals, by Box-Muller, of four words: word k is number i of
-    SplitMix64 from the seed key_k. The keys are the words of item 0 of stream BATH: seeds of their
-    own for each collision. A block of Philox for each particle would take longer than all else that
-    the particle does.
+    Particle i takes the first d normals, by Box-Muller, of its four mixed words of stream BATH.
     """
     dimensions, particles = velocities.shape
-    words = split_mix(random.words(Stream.BATH, 1), np.arange(particles, dtype=np.uint64))
+    words = random.mixed(Stream.BATH, particles)
     velocities[:] = box_muller(uniform(words))[:dimensions]
-
-
-def split_mix(seeds: Words, numbers: Words) -> Words:
-    """Numbers 0, 1, ... of SplitMix64 (Steele, Lea and Flood, OOPSLA 2014), modulo 2^64."""
-    z = seeds + (numbers + np.uint64(1)) * np.uint64(0x9E3779B97F4A7C15)
-    z = (z ^ (z >> np.uint64(30))) * np.uint64(0xBF58476D1CE4E5B9)
-    z = (z ^ (z >> np.uint64(27))) * np.uint64(0x94D049BB133111EB)
-    words: Words = z ^ (z >> np.uint64(31))
-    return words

@@ -102,7 +102,7 @@ class SingleEngine(ReferenceEngine):
             mean = mean_with_virtual_particles(velocities, cells, cut, solvent.density, random)
         matrices = self._matrices(cells, random)
         offsets = mean - np.einsum("abc,bc->ac", matrices, mean)
-        digits = random.words(Stream.ROTATION, cells.count)[3] & FINER
+        digits = random.mixed(Stream.ROTATION, cells.count)[3] & FINER
         if solvent.thermostat not in UNSCALED:
             digits = np.full_like(digits, NEAREST)
             factors, centre = self._factors(velocities, cells, matrices, offsets, random)

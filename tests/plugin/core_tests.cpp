@@ -99,7 +99,7 @@ void four_particles_in_a_cell()
              std::move(how));
   box.collide();
   const auto &v = box.solver->fluid().v;
-  const double sign = uniform(CounterRandom{1, 0}.words(Stream::Rotation, 1 + 4 * 2)[0]) < 0.5 ? 1 : -1;
+  const double sign = uniform(CounterRandom{1, 0}.mixed(Stream::Rotation).word(0, 1 + 4 * 2)) < 0.5 ? 1 : -1;
   const double x[] = {0.5, -1.5, 1.5, -0.5}, y[] = {-1.5, 0.5, 1.5, -0.5};    // relative
   for (int i = 0; i < 4; ++i) {
     CHECK(close(v[0][i], 0.5 - sign * y[i]));
@@ -114,7 +114,7 @@ void rotation_in_three_dimensions_is_orthogonal()
   for (auto axes : {Axes::Coordinate, Axes::Random})
     for (int cell = 0; cell < 50; ++cell) {
       Turn<3> turn;
-      Rotation(2.0, axes).draw(CounterRandom{3, 1}, cell, turn);
+      Rotation(2.0, axes).draw(CounterRandom{3, 1}.mixed(Stream::Rotation), cell, turn);
       for (int a = 0; a < 3; ++a)
         for (int b = 0; b < 3; ++b) {
           double product = 0;
@@ -750,6 +750,26 @@ template <int D> void memory_per_particle(int cells, double most)
   CHECK(solver.memory() / count <= most);
 }
 
+// All velocities, once more, and a few places for the prime.
+void memory_of_shuffle()
+{
+  Processes alone;
+  const Grid<2> grid({100, 100}, {true, true}, 1.0);
+  const auto memory = [&](std::unique_ptr<RandomSolvent<2>> solvent) {
+    auto shuffled = method<2>();
+    shuffled.random_solvent = std::move(solvent);
+    Solver<2> solver(grid, std::move(shuffled), alone);
+    solver.reset(0, grid.lower, grid.upper);
+    for (int i = 0; i < 1000; ++i) solver.add({static_cast<double>(i), {0.1 * i, 50.0}, {}});
+    solver.count();
+    solver.begin_interval({}, 0);
+    solver.end_interval();
+    return solver.memory();
+  };
+  const double more = memory(std::make_unique<ShuffledSolvent<2>>()) - memory(nullptr);
+  CHECK(more >= 1000 * sizeof(Pack<2>) && more < 1100 * sizeof(Pack<2>));
+}
+
 }    // namespace
 
 // A fluid between walls or not, and the same one in single precision: a place and a digit are 1e-6
@@ -926,6 +946,7 @@ int main()
   what_single_precision_cannot_hold_is_named();
   memory_per_particle<2>(100, 80);
   memory_per_particle<3>(22, 112);
+  memory_of_shuffle();
   std::printf("%d failures\n", failures);
   return failures > 0;
 }

@@ -73,6 +73,33 @@ def vectors(instance: Any, name: str, count: int = 2) -> Array:
 
 
 @pytest.mark.parametrize("dlvo", CASES.values(), ids=CASES)
+def test_pairs_come_in_reach_and_leave_it_between_two_neighbor_lists(
+    lammps: Commands, dlvo: Dlvo
+) -> None:
+    """From beyond the cutoff through all ranges to contact and back, with one list."""
+    start = setup(dlvo, pair(5.3, "velocity all set 0 0 0"))
+    late = "neighbor 4.0 bin\nneigh_modify delay 100000 every 100000 check no\n"
+    instance = lammps(start + late + "fix move all nve\nrun 0 post no")
+    way = np.array([1, 2, 2]) / 3
+    pushed = []
+    for r in [*np.linspace(5.3, 0.95 * dlvo.diameter, 60), *np.linspace(dlvo.diameter, 5.3, 40)]:
+        x = instance.numpy.extract_atom("x")
+        velocities = instance.numpy.extract_atom("v")
+        x[:2] = 10 + 0.5 * r * np.outer([-1, 1], way)
+        velocities[:2] = 0
+        instance.command("run 1 pre no post no")
+        x, f = vectors(instance, "x"), vectors(instance, "f")
+        apart = x[1] - x[0]
+        distance = float(np.linalg.norm(apart))
+        force = float(dlvo.force(distance)) if distance < 5.0 else 0.0
+        assert_allclose(f[1], force * apart / distance, rtol=1e-11, atol=1e-12)
+        assert_allclose(f[0], -f[1], atol=1e-12)
+        pushed.append(np.abs(f).max())
+    assert pushed[0] == pushed[-1] == 0
+    assert max(pushed) > 1
+
+
+@pytest.mark.parametrize("dlvo", CASES.values(), ids=CASES)
 def test_energy_and_force_are_those_of_numpy(lammps: Commands, dlvo: Dlvo) -> None:
     edges = [edge * (1 + shift) for edge in (dlvo.diameter, dlvo.joint) for shift in (-1e-9, 1e-9)]
     for r in [*np.linspace(0.9 * dlvo.diameter, 4.0, 40), *edges]:

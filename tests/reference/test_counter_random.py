@@ -48,6 +48,18 @@ def test_item_owns_the_block_of_counter_index_plus_one(
         assert words[:, index].tolist() == expected
 
 
+def test_mixed_words_are_of_split_mix_from_the_words_of_item_0() -> None:
+    random = CounterRandom(7, 3)
+    keys = random.words(Stream.ROTATION, 1)[:, 0].tolist()
+    words = random.mixed(Stream.ROTATION, 5)
+    for k, key in enumerate(keys):
+        for item in range(5):
+            z = (key + (item + 1) * 0x9E3779B97F4A7C15) & MASK
+            z = ((z ^ z >> 30) * 0xBF58476D1CE4E5B9) & MASK
+            z = ((z ^ z >> 27) * 0x94D049BB133111EB) & MASK
+            assert words[k, item] == z ^ z >> 31
+
+
 def test_fewer_items_draw_the_same_numbers() -> None:
     random = CounterRandom(7, 3)
     np.testing.assert_array_equal(

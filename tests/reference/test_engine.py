@@ -10,7 +10,7 @@ from lammps_inputs import InitialState, Scene, make_scene
 from lammps_inputs.scenes.bulk import Bulk
 from lammps_inputs.scenes.channel import Channel
 from srd_driver.reference import ReferenceEngine
-from srd_driver.reference.counter_random import CounterRandom, Stream
+from srd_driver.reference.counter_random import CounterRandom, Stream, uniform
 from tests.hand_made import Mixture3D, Slit3D
 from tests.parts import solvent_of
 
@@ -88,7 +88,7 @@ def test_one_collision_by_hand() -> None:
     first, second = np.floor(engine.fluid_positions + shift).astype(int) % 4
     assert first.tolist() == second.tolist()  # true for this seed
     cell = first[0] + 4 * first[1]
-    sign = 1 if random.uniform(Stream.ROTATION, 16)[0, cell] < 0.5 else -1
+    sign = 1 if uniform(random.mixed(Stream.ROTATION, 16))[0, cell] < 0.5 else -1
     # mean (1, -0.1), relative velocities (0, +-0.1) turned to (-+ sign 0.1, 0)
     np.testing.assert_allclose(
         engine.fluid_velocities, [[1 - sign * 0.1, -0.1], [1 + sign * 0.1, -0.1]], atol=1e-15

@@ -11,7 +11,7 @@ from scipy.stats import chi2, kstest
 from lammps_inputs.scenes.bulk import Bulk
 from lammps_inputs.system import Hydrodynamics
 from srd_driver.reference import ReferenceEngine, random_solvent
-from srd_driver.reference.counter_random import CounterRandom, Stream
+from srd_driver.reference.counter_random import CounterRandom, Stream, split_mix
 
 
 def affine_in_plain_python(index: int, count: int, seed: int, step: int) -> int:
@@ -70,7 +70,7 @@ def test_shuffle_only_reorders() -> None:
 
 
 def test_split_mix_gives_what_its_authors_do() -> None:
-    words = random_solvent.split_mix(np.array([1234567], np.uint64), np.arange(3, dtype=np.uint64))
+    words = split_mix(np.array([1234567], np.uint64), np.arange(3, dtype=np.uint64))
     assert words.tolist() == [6457827717110365317, 3203168211198807973, 9817491932198370423]
 
 

@@ -152,3 +152,27 @@ REFUSALS = {
 def test_other_engines_refuse_by_name(engine: str, coupling: str) -> None:
     with pytest.raises(SceneError, match=REFUSALS[engine, coupling]):
         check_engine(make_scene("claylike", coupling=coupling), engine)
+
+
+@pytest.mark.parametrize("fields", [CELL, REFLECTION], ids=["cell", "reflection"])
+def test_a_run_begins_with_the_last_colloids_of_another(
+    fields: dict[str, Any], tmp_path: Path
+) -> None:
+    """Their places and velocities, less what the momentum of all takes; a weaker attraction."""
+    first, second = tmp_path / "first", tmp_path / "second"
+    short = fields | {"duration": 4.0, "sampling_interval": 2.0, "surface_potential": 0.03}
+    with Simulation(make_scene("claylike", **short), "mpc", first) as simulation:
+        simulation.finish()
+    weaker = short | {"surface_potential": 0.05, "seed": 2}
+    other = make_scene("claylike", **weaker, start=str(first))
+    with Simulation(other, "mpc", second) as simulation:
+        simulation.finish()
+    before, after = RunDirectory(first).particles(), RunDirectory(second).particles()
+    box = RunDirectory(first).box.sizes
+    apart = after.positions[0] - before.positions[-1]
+    np.testing.assert_allclose(apart - box * np.round(apart / box), 0, atol=1e-9)
+    drift = after.velocities[0] - before.velocities[-1]
+    np.testing.assert_allclose(drift - drift[0], 0, atol=1e-6)  # read in single precision
+    wrong = make_scene("claylike", **(short | {"volume_fraction": 0.1}), start=str(first))
+    with pytest.raises(SceneError, match=r"start of claylike: .*no whole frame of"):
+        Simulation(wrong, "mpc", tmp_path / "third")

@@ -118,7 +118,7 @@ def _draw_correlations(
     return figure, table, found
 
 
-def _first_peak(found: RadialDistribution, radius: float) -> tuple[Estimate, Estimate]:
+def first_peak(found: RadialDistribution, radius: float) -> tuple[Estimate, Estimate]:
     """Its distance [R], to half a bin, and its height."""
     highest = int(np.argmax(found.g))
     width = found.distance[1] - found.distance[0]
@@ -130,7 +130,7 @@ def _make_screening(directories: Directories, quality: Quality) -> Outcome:
     cases = by_kappa(quality)
     figure, table, found = _draw_correlations(cases, directories)
     radius = cases[0][1].model.reduced_radius
-    peaks = [_first_peak(each, radius) for each in found]
+    peaks = [first_peak(each, radius) for each in found]
     bonds = [_bonds(directories[scene]) for _, scene in cases]
     results = [
         measured("10", f"first peak at {name} [R]", place)
@@ -161,7 +161,7 @@ def _make_surface(directories: Directories, quality: Quality) -> Outcome:
     cases = by_surface_potential(quality)
     figure, table, found = _draw_correlations(cases, directories)
     radius = cases[0][1].model.reduced_radius
-    heights = [_first_peak(each, radius)[1] for each in found]
+    heights = [first_peak(each, radius)[1] for each in found]
     results = [
         measured("11", f"height of the first peak at {name}", height)
         for (name, _), height in zip(cases, heights, strict=True)
@@ -179,7 +179,7 @@ def _make_surface(directories: Directories, quality: Quality) -> Outcome:
     return Outcome(figure, table, results)
 
 
-def _layering(distance: Array, found: RadialDistribution) -> Estimate:
+def layering(distance: Array, found: RadialDistribution) -> Estimate:
     """Root of the mean of (g - 1)^2 between six and eight radii, what noise adds taken off."""
     inside = (distance > LAYERS[0]) & (distance < LAYERS[1])
     noise = float((found.error[inside] ** 2).mean())
@@ -193,7 +193,7 @@ def _make_fractions(
     cases = by_fraction(kappa, quality)
     figure, table, found = _draw_correlations(cases, directories)
     distance = np.array(table["r/R"])
-    layers = [_layering(distance, each) for each in found]
+    layers = [layering(distance, each) for each in found]
     results = [
         measured(number, f"r.m.s. of g - 1 from 6 to 8 R at {name}", layer)
         for (name, _), layer in zip(cases, layers, strict=True)

@@ -1,6 +1,7 @@
 """Figs. 5 to 7: g(r) of clusters in the secondary minimum, and of a repulsive suspension."""
 
 from functools import partial
+from typing import Any
 
 import numpy as np
 
@@ -23,9 +24,12 @@ SHIFT = "50 mV and 3e8 / m shut the primary minimum: peaks are those of the seco
 
 
 def production(
-    surface_potential: float, kappa: float, volume_fraction: float, quality: Quality
+    surface_potential: float, kappa: float, volume_fraction: float, quality: Quality, **more: Any
 ) -> Claylike:
-    """Without gravity; the latter two thirds are looked at, in full quality after 0.5 s."""
+    """Without gravity; the latter two thirds are looked at, in full quality after 0.5 s.
+
+    `more` are other fields of the scene.
+    """
     duration = 900.0 if quality == "full" else 60.0
     return Claylike.make(
         surface_potential=surface_potential,
@@ -34,6 +38,7 @@ def production(
         duration=duration,
         equilibration=0.5 * duration,
         sampling_interval=2.0,
+        **more,
     )
 
 
