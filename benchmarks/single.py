@@ -18,7 +18,6 @@ from engines import COMMANDS, DECKS, Deck
 from narrows.markdown import replace_block, table
 from pareto import STUDIES, Quantity, Setting, evaluate, measure_speeds, plan, setting
 from pareto import _name as name_of
-from run_files.writing import replace_text
 from srd_driver.sweep import run_all
 
 SIZES = ((2, 316), (2, 1000), (3, 46), (3, 100))  # dimensions, edge in cells of 10 particles
@@ -142,8 +141,7 @@ def main() -> None:
         made = tables[f"single-{name}"]()
         print(made, flush=True)
         if options.page:
-            text = options.page.read_text(encoding="utf-8")
-            replace_text(options.page, replace_block(text, f"single-{name}", made))
+            replace_block(options.page, f"single-{name}", made)
 
 
 if __name__ == "__main__":
