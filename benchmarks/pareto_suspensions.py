@@ -31,7 +31,7 @@ from lammps_inputs import Scene
 from lammps_inputs.scenes.claylike import Claylike
 from narrows.markdown import replace_block
 
-BUDGET, QUICK_BUDGET = 9.0, 3.0  # processor seconds of a setting
+BUDGET, QUICK_BUDGET = 6.0, 2.0  # processor seconds of a setting
 
 APART: Fields = {"surface_potential": 0.05, "kappa": 1e8, "peclet": 2.0}  # they repel each other
 TOUCHING: Fields = {"potential": "hertz", "volume_fraction": 0.3, "peclet": 2.0}
@@ -106,7 +106,7 @@ def steps(*numbers: int) -> tuple[Setting, ...]:
 
 
 def each(name: str, *values: float | str) -> tuple[Setting, ...]:
-    return tuple(setting("mpc", **{name: value}) for value in values)
+    return tuple(Setting("mpc", ((name, value),)) for value in values)
 
 
 def flights(*values: float, steps: float) -> tuple[Setting, ...]:

@@ -32,9 +32,10 @@ SHEAR_WAVE: Fields = {"length": 96, "width": 32, "shear_wave": 0.6}
 def over_theory(summary: Summary, scene: Scene) -> Estimate:
     """The viscosity of a shear wave over that of kinetic theory."""
     entry = summary["viscosity"]
-    if not entry["theory"]:
-        return Estimate(None, None, entry.get("reason") or "theory has none")
-    return Estimate.of_json(entry) / entry["theory"]
+    found, theory = Estimate.of_json(entry), entry["theory"]
+    if not theory:
+        return Estimate(None, None, found.reason or "theory has none")
+    return found / float(theory)
 
 
 def over_linear(summary: Summary, scene: Scene) -> Estimate:
