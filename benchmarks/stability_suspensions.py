@@ -28,6 +28,9 @@ from stability_map import (
 
 DILUTE = {"cell": 2.84, "reflection": 1.0}  # D over (18), by narrows reproduce hecht-2005
 SETTLING = {"cell": 2.15, "reflection": 0.85}  # over Stokes, by pareto_suspensions.py
+FREE = 2.57  # of coupling II without any forces, here at the default edge of a cell
+
+AT_CONTACT = 2.48  # g of hard spheres at 0.3, (1 - phi / 2) / (1 - phi)^3
 
 CELL: Fields = {"cells": 10, "duration": 120, "equilibration": 30}
 REFLECTION: Fields = {"coupling": "reflection", "cells": 16, "duration": 300, "equilibration": 60}
@@ -46,6 +49,11 @@ def diffusion(summary: Summary, scene: Scene) -> Estimate:
 def settling(summary: Summary, scene: Scene) -> Estimate:
     """Over what it is at a Peclet number of 2."""
     return speed(summary, scene) / SETTLING[claylike(scene).coupling]
+
+
+def settling_free(summary: Summary, scene: Scene) -> Estimate:
+    """Over what it is at the default edge of a cell."""
+    return speed(summary, scene) / FREE
 
 
 def nearest(summary: Summary, scene: Scene) -> Estimate:
@@ -67,7 +75,11 @@ TEMPERATURES = {
 }
 DIFFUSION = Criterion("D", 0.2, 0.5, diffusion)
 SPEED = Criterion("settling_speed / Pe", 0.1, 0.5, settling)
+FREE_SPEED = Criterion("settling_speed / Pe", 0.2, 0.5, settling_free)
 PLACE = Criterion("place of the peak of g(r) / 2 R", 0.1, 0.3, nearest)
+HARD = Criterion(
+    "peak of g(r), hard spheres", 0.2, 0.4, over("radial_distribution.peak_height", AT_CONTACT)
+)
 RATE = Criterion("rate of shear", 0.1, 0.5, sheared)
 
 
@@ -191,7 +203,7 @@ AXES = (
         "cell edge [R]",
         (0.4, 0.6, 0.8, 1, 1.6, 3),
         large,
-        SPEED,
+        FREE_SPEED,
     ),
     axis("II", "cells", (4, 5, 7, 10), field("cells")),
     axis(
@@ -204,7 +216,7 @@ AXES = (
     axis("II", "kappa [1/m]", KAPPAS, field("kappa")),
     axis("II", "Psi_0 [V]", POTENTIALS, field("surface_potential")),
     axis("II", "depth of the minimum [kBT]", DEPTHS, field("minimum_depth"), PLACE),
-    axis("II", "K [kBT]", CONTACTS, soft, PLACE),
+    axis("II", "K [kBT]", CONTACTS, soft, HARD),
     axis("II", "friction", FRICTIONS, field("friction")),
     axis("II", "Pe", PECLETS, field("peclet", **APART, duration=300), SPEED),
     axis("II", "rate of shear", RATES, between_walls, RATE),
@@ -236,7 +248,7 @@ AXES = (
     axis("I", "kappa [1/m]", KAPPAS, field("kappa")),
     axis("I", "Psi_0 [V]", POTENTIALS, field("surface_potential")),
     axis("I", "depth of the minimum [kBT]", DEPTHS, field("minimum_depth")),
-    axis("I", "K [kBT]", CONTACTS, soft, PLACE),
+    axis("I", "K [kBT]", CONTACTS, soft, HARD),
     axis("I", "friction", FRICTIONS, field("friction")),
     axis("I", "Pe", PECLETS, field("peclet", **APART, duration=1000), SPEED),
     axis("I", "rate of shear", RATES, between_walls, RATE),

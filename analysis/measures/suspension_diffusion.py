@@ -40,22 +40,26 @@ def measure(run: RunDirectory) -> Findings:
     return Findings(
         {"diffusion": entry},
         {"diffusion.png": draw(found)},
-        warnings=correlation_warnings(found.kept, float(found.times[-1])),
+        warnings=correlation_warnings(found.kept, float(found.times[-1]), longest),
     )
 
 
-def correlation_warnings(kept: Estimate, longest: float) -> tuple[str, ...]:
-    """Where colloids fly on for longer than D looks at them, and it comes out too small.
+def correlation_warnings(kept: Estimate, longest: float, wanted: float) -> tuple[str, ...]:
+    """Where colloids keep their way for longer than D looks at them.
+
+    It is then too small; too large if they are sheared.
 
     Args:
         kept: of a velocity at the longest lag.
         longest: lag [t0].
+        wanted: lag, of a run that is long enough [t0].
     """
     if kept.number - SIGNIFICANT * kept.normal_error <= MEMORY:
         return ()
     return (
         f"at the longest lag of diffusion, {longest:.3g} t0, {kept.number:.2g} of a colloid's "
-        "velocity is left: D is too small",
+        "velocity is left: D is not that of long times"
+        + ("; run longer" if longest < 0.9 * wanted else ""),
     )
 
 

@@ -78,11 +78,12 @@ def test_both_ways_give_d_of_persistent_walks_that_drift() -> None:
         value, error = known(estimate)
         assert error < 0.03 * exact
         assert abs(value - exact) < 4 * error
-    assert not correlation_warnings(found.kept, 25.0)
+    assert not correlation_warnings(found.kept, 25.0, 25.0)
     short = suspension_diffusion(positions, interval, longest=2.0)
     left, error = known(short.kept)
     assert abs(left - keep**4) < 4 * error, "of displacements over an interval, c for each"
-    assert "D is too small" in correlation_warnings(short.kept, 2.0)[0]
+    assert correlation_warnings(short.kept, 2.0, 2.0)[0].endswith("D is not that of long times")
+    assert correlation_warnings(short.kept, 2.0, 25.0)[0].endswith("times; run longer")
     with pytest.raises(ValueError, match="at least 128 are needed"):
         suspension_diffusion(positions[:100], interval, longest=25.0)
 
