@@ -216,8 +216,11 @@ def evaluate(
         }
         if isinstance(quantity.truth, Setting):
             truth = told[quantity.truth]
-            assert truth.value is not None
-            assert truth.error is not None
+            if truth.value is None or truth.error is None:
+                print(
+                    f"{study.name}: no {quantity.name}, as its truth is not known: {truth.reason}"
+                )
+                continue
             true_value, true_error = truth.value, truth.error
         else:
             true_value, true_error = quantity.truth, 0.0
@@ -225,7 +228,7 @@ def evaluate(
         for chosen in filter(quantity.concerns, study.settings):
             found = told[chosen]
             if found.value is None or not found.error:
-                print(f"no {quantity.name} from {chosen}: {found.reason}")
+                print(f"{study.name}: no {quantity.name} from {chosen}: {found.reason}")
                 continue
             simulated = sum(summary["simulated_time"] for summary, _ in summaries[chosen])
             speed = speeds[_name(number, chosen)]

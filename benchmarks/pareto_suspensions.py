@@ -26,11 +26,15 @@ from accuracy import (
     setting,
 )
 from analysis.estimate import Estimate
+from analysis.suspension_diffusion import TERMS
 from lammps_inputs import Scene
 from lammps_inputs.scenes.claylike import Claylike
 from narrows.markdown import replace_block
 
 BUDGET, QUICK_BUDGET = 5.0, 2.0  # processor seconds of a setting
+
+SHARE = 32  # of a run is the longest lag: a quarter of an eighth
+LONG = 2  # budgets of coupling II, for lags of 50 collisions
 
 APART: Fields = {"surface_potential": 0.05, "kappa": 1e8, "peclet": 2.0}  # they repel each other
 TOUCHING: Fields = {"potential": "hertz", "volume_fraction": 0.3, "peclet": 2.0}
@@ -57,7 +61,11 @@ def alone(scene: Scene) -> float:
 
 
 def diffusion(summary: Summary, scene: Scene) -> Estimate:
-    """Without the images of the box, over (18)."""
+    """Without the images of the box, over (18); of lags of 50 collisions."""
+    longest = summary["sampled_time"] / SHARE
+    wanted = TERMS * claylike(scene).mean_free_path
+    if longest < 0.9 * wanted:
+        return Estimate(None, None, f"lags of {longest:.2g} of {wanted:g} t0 tell too little")
     return entry(summary, "diffusion.infinite_box").scaled(1 / alone(scene))
 
 
@@ -100,18 +108,18 @@ def study(
     )
 
 
-def steps(*numbers: int) -> tuple[Setting, ...]:
-    return tuple(setting("mpc", md_steps_per_collision=number) for number in numbers)
+def steps(*numbers: int, budgets: int = 1) -> tuple[Setting, ...]:
+    return each("md_steps_per_collision", *numbers, budgets=budgets)
 
 
-def each(name: str, *values: float | str) -> tuple[Setting, ...]:
-    return tuple(Setting("mpc", ((name, value),)) for value in values)
+def each(name: str, *values: float | str, budgets: int = 1) -> tuple[Setting, ...]:
+    return tuple(Setting("mpc", ((name, value),), budgets) for value in values)
 
 
-def flights(*values: float, steps: float) -> tuple[Setting, ...]:
+def flights(*values: float, steps: float, budgets: int = 1) -> tuple[Setting, ...]:
     """Mean free paths with steps of the same time, so many in a0."""
     return tuple(
-        setting("mpc", mean_free_path=value, md_steps_per_collision=round(steps * value))
+        setting("mpc", budgets, mean_free_path=value, md_steps_per_collision=round(steps * value))
         for value in values
     )
 
@@ -123,10 +131,10 @@ STUDIES = (
         "II, apart",
         APART | CELL,
         (
-            *steps(30, 67, 134, 268),
-            *each("density", 10, 20, 40, 120),
-            *flights(0.1, 0.25, 1.0, steps=536),
-            *each("lubrication", "off"),
+            *steps(30, 67, 134, 268, budgets=LONG),
+            *each("density", 10, 20, 40, 120, budgets=LONG),
+            *flights(0.1, 0.25, 1.0, steps=536, budgets=LONG),
+            *each("lubrication", "off", budgets=LONG),
         ),
         FINE_CELL,
     ),
@@ -143,8 +151,8 @@ STUDIES = (
     study(
         "II, box",
         APART | CELL,
-        each("cells", 7, 8, 10, 12),
-        setting("mpc", CONVERGED // 4, cells=16),
+        (*each("cells", 7, 8, 10, budgets=LONG), *each("cells", 12, budgets=2 * LONG)),
+        setting("mpc", 4 * LONG, cells=16),
     ),
     study(
         "I, apart",

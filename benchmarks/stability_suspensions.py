@@ -27,7 +27,7 @@ from stability_map import (
 )
 
 DILUTE = {"cell": 2.84, "reflection": 1.0}  # D over (18), by narrows reproduce hecht-2005
-SETTLING = {"cell": 2.15, "reflection": 0.85}  # over Stokes, by pareto_suspensions.py
+SETTLING = {"cell": 2.15, "reflection": 0.68}  # over Stokes, by pareto_suspensions.py
 FREE = 2.57  # of coupling II without any forces, here at the default edge of a cell
 
 AT_CONTACT = 2.48  # g of hard spheres at 0.3, (1 - phi / 2) / (1 - phi)^3
