@@ -34,7 +34,7 @@ from narrows.markdown import replace_block
 BUDGET, QUICK_BUDGET = 5.0, 2.0  # processor seconds of a setting
 
 SHARE = 32  # of a run is the longest lag: a quarter of an eighth
-LONG = 2  # budgets of coupling II, for lags of 50 collisions
+LONG = 2  # budgets, for lags of 50 collisions
 
 APART: Fields = {"surface_potential": 0.05, "kappa": 1e8, "peclet": 2.0}  # they repel each other
 TOUCHING: Fields = {"potential": "hertz", "volume_fraction": 0.3, "peclet": 2.0}
@@ -170,17 +170,17 @@ STUDIES = (
         "I, touching",
         TOUCHING | REFLECTION,
         (
-            *steps(55, 111),
-            *each("closest", 0.01, 0.1, 0.3),
-            *each("lubrication", "off"),
-            *each("placement", "nearest"),
+            *steps(55, 111, budgets=LONG),
+            *each("closest", 0.01, 0.1, 0.3, budgets=LONG),
+            *each("lubrication", "off", budgets=LONG),
+            *each("placement", "nearest", budgets=LONG),
         ),
         FINE_REFLECTION,
     ),
     study(
         "I, box",
         APART | REFLECTION,
-        each("cells", 14, 16, 20, 24),
+        (*each("cells", 14, 16), *each("cells", 20, 24, budgets=2 * LONG)),
         setting("mpc", CONVERGED // 4, cells=32),
     ),
     Study(
