@@ -21,12 +21,14 @@ class RadialDistribution:
         distance: middle of the bins, (bins,) [a0].
         g, error: (bins,); the error is from the scatter of the frames, as if independent.
         peaks: distances of the maxima that stand out, the innermost first [a0].
+        frames: g of each frame, (T, bins).
     """
 
     distance: Array
     g: Array
     error: Array
     peaks: Array
+    frames: Array
 
 
 def radial_distribution(
@@ -56,4 +58,4 @@ def radial_distribution(
     candidates, found = find_peaks(g, prominence=1e-9)
     stand_out = found["prominences"] > PROMINENCE * noise[candidates]
     middle = 0.5 * (edges[1:] + edges[:-1])
-    return RadialDistribution(middle, g, error, middle[candidates[stand_out]])
+    return RadialDistribution(middle, g, error, middle[candidates[stand_out]], each)

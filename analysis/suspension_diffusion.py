@@ -33,6 +33,7 @@ class SuspensionDiffusion:
         msd: mean squared displacement in one direction, (lags,) [a0^2].
         integral: of (35) up to each lag, (lags,) [a0^2/t0].
         from_msd, green_kubo: D.
+        kept: of a velocity at the longest lag, as a part of it: 0 where D is that of long times.
     """
 
     times: Array
@@ -40,6 +41,7 @@ class SuspensionDiffusion:
     integral: Array
     from_msd: Estimate
     green_kubo: Estimate
+    kept: Estimate
 
 
 def suspension_diffusion(positions: Array, interval: float, longest: float) -> SuspensionDiffusion:
@@ -75,12 +77,16 @@ def suspension_diffusion(positions: Array, interval: float, longest: float) -> S
     def slope(msd: Array) -> float:
         return float(np.polyfit(times[late], msd[late], 1)[0]) / 2
 
+    def kept(correlation: Array) -> float:
+        return float(correlation[-1] / correlation[0]) if correlation[0] else 0.0
+
     return SuspensionDiffusion(
         times,
         msds.mean(axis=0),
         np.asarray(integrals.mean(axis=0), dtype=float),
         jackknife(slope, msds),
         jackknife(lambda integral: float(integral[-1]), integrals),
+        jackknife(kept, correlations),
     )
 
 

@@ -3,6 +3,7 @@
 import numpy as np
 from matplotlib.figure import Figure
 
+from analysis import correlated_mean
 from analysis.drawing import one_panel
 from analysis.findings import Findings
 from analysis.measures.settling_speed import sampled_frames
@@ -18,14 +19,16 @@ FRAMES = 400  # looked at, evenly spaced
 def measure(run: RunDirectory) -> Findings:
     """Highest peak, and the distances of all that stand out."""
     used, diameter = np.flatnonzero(sampled_frames(run)), 2 * run.species().radius
-    frames = used[:: max(1, len(used) // FRAMES)]
+    stride = max(1, len(used) // FRAMES)
+    frames = used[::stride]
     positions = run.particles().positions[frames]
     largest = min(4 * diameter, min(run.box.sizes) / 2 - diameter / BINS)
     found = radial_distribution(positions, run.box.sizes, diameter / BINS, largest)
     highest = int(np.argmax(found.g))
+    height = correlated_mean.mean(found.frames[:, highest], stride * run.interval)
     entry = {
         "peak_position": float(found.distance[highest]),
-        "peak_height": {"value": float(found.g[highest]), "error": float(found.error[highest])},
+        "peak_height": height.as_json(),
         "peaks": found.peaks.tolist(),
         "peaks_over_radius": (found.peaks / (0.5 * diameter)).tolist(),
         "bin_width": diameter / BINS,

@@ -4,6 +4,7 @@ from matplotlib.figure import Figure
 
 from analysis.estimate import Estimate
 from analysis.findings import Findings, in_si
+from analysis.health import SIGNIFICANT
 from analysis.measures.settling_speed import sampled_frames
 from analysis.run_directory import RunDirectory
 from analysis.suspension_diffusion import (
@@ -12,6 +13,8 @@ from analysis.suspension_diffusion import (
     infinite_box,
     suspension_diffusion,
 )
+
+MEMORY = 0.1  # of a velocity: with more, D of a persistent walk is short by a fifth or more
 
 QUANTITIES = ("diffusion.msd", "diffusion.green_kubo", "diffusion.infinite_box")
 
@@ -34,7 +37,30 @@ def measure(run: RunDirectory) -> Findings:
         infinite = infinite_box(found.from_msd, eta, run.length)
     known = {"msd": found.from_msd, "green_kubo": found.green_kubo, "infinite_box": infinite}
     entry = {name: in_si(run, each, length=2, time=-1) for name, each in known.items()}
-    return Findings({"diffusion": entry}, {"diffusion.png": draw(found)})
+    return Findings(
+        {"diffusion": entry},
+        {"diffusion.png": draw(found)},
+        warnings=correlation_warnings(found.kept, float(found.times[-1]), longest),
+    )
+
+
+def correlation_warnings(kept: Estimate, longest: float, wanted: float) -> tuple[str, ...]:
+    """Where colloids keep their way for longer than D looks at them.
+
+    It is then too small; too large if they are sheared.
+
+    Args:
+        kept: of a velocity at the longest lag.
+        longest: lag [t0].
+        wanted: lag, of a run that is long enough [t0].
+    """
+    if kept.number - SIGNIFICANT * kept.normal_error <= MEMORY:
+        return ()
+    return (
+        f"at the longest lag of diffusion, {longest:.3g} t0, {kept.number:.2g} of a colloid's "
+        "velocity is left: D is not that of long times"
+        + ("; run longer" if longest < 0.9 * wanted else ""),
+    )
 
 
 def draw(

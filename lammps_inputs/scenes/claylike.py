@@ -46,6 +46,8 @@ WALL_ENERGY = 1000.0  # of a colloid whose centre is on a wall [kBT]
 MACH = 0.08  # as for the channel: above, speeds are no longer in proportion to the pull
 CLOSEST, FARTHEST = 0.03, 0.5  # gaps of lubrication [R]
 DRIFT_INTERVAL = 100  # collisions, "every hundreds of SRD time steps" (VIII A)
+LARGEST = 1.0  # radius of colloids that take part in the collision of a cell [a0]
+OVERLAP = 0.3  # of the radius that kBT presses spheres into each other [R]
 FASTER = {"cell": 3.0, "reflection": 1.0}  # than Stokes: coupling II has a third of the radius
 EDGES = {"cell": 1.6, "reflection": 0.5}  # of a cell [R]: production runs; VII B
 REFLECTION = {"cells": 48, "density": 2.5, "mean_free_path": 0.6, "md_steps_per_collision": 111}
@@ -246,6 +248,12 @@ class Claylike(Scene):
         return full
 
     @property
+    def meet(self) -> bool:
+        """Whether colloids ever touch, by forces that are of contact."""
+        between = self.between
+        return bool(between and between.hertz and between.barrier < MOST_ENERGY)
+
+    @property
     def si_units(self) -> dict[str, float]:
         """Of the simulation, whose kBT is not that of the laboratory."""
         return {
@@ -435,8 +443,7 @@ class Claylike(Scene):
             return
         phase = step * math.sqrt(between.stiffest(MOST_ENERGY) / half)
         if phase > PHASE:
-            contact = between.hertz and between.barrier < MOST_ENERGY
-            what = "contact and the primary minimum are" if contact else "the potential is"
+            what = "contact and the primary minimum are" if self.meet else "the potential is"
             yield (
                 f"md_steps_per_collision = {steps!r}: {what} too stiff for steps of {step:.3g}, "
                 f"omega dt is {phase:.2g}; must be at least {math.ceil(steps * phase / PHASE)}, or "
@@ -463,6 +470,17 @@ class Claylike(Scene):
             yield from solvent_warnings(system.solvent, system.box)
         for lost in self.model.time_scales().lost_order():
             yield f"radius = {self.radius!r}, cell_edge = {self.edge!r}: {lost}"
+        radius, overlap = self.model.reduced_radius, self.hertz**-0.4
+        if self.coupling == "cell" and radius > LARGEST:
+            yield (
+                f"cell_edge = {self.edge!r}: spheres of {radius:.3g} cells in radius collide with "
+                f"the fluid of one; above {LARGEST:g} the fluid drags them as smaller ones"
+            )
+        if self.meet and overlap > OVERLAP:
+            yield (
+                f"hertz = {self.hertz!r}: kBT presses spheres into each other by {overlap:.2g} of "
+                f"their radius; above {OVERLAP:g} they are no spheres of that radius"
+            )
         for field, value, speed in (
             ("peclet", self.peclet, self.expected_speed),
             ("shear_rate", self.shear_rate, abs(self.wall_speed)),

@@ -1,6 +1,8 @@
 """Settling frames, diffusion, clusters, g(r) and normality of suspensions against known cases."""
 
 import math
+from types import SimpleNamespace
+from typing import cast
 
 import numpy as np
 import pytest
@@ -8,10 +10,14 @@ from scipy.sparse import coo_matrix
 from scipy.sparse.csgraph import connected_components
 
 from analysis import correlated_mean
+from analysis.arrays import Array
 from analysis.clusters import cluster_series, labels
 from analysis.estimate import Estimate
+from analysis.measures import radial_distribution as measured_g
+from analysis.measures.suspension_diffusion import correlation_warnings
 from analysis.normality import FALSE_ALARMS, normal_probability, normality
 from analysis.radial_distribution import radial_distribution
+from analysis.run_directory import RunDirectory
 from analysis.sedimentation import richardson_zaki, settling_speeds
 from analysis.suspension_diffusion import (
     CUBIC,
@@ -72,6 +78,12 @@ def test_both_ways_give_d_of_persistent_walks_that_drift() -> None:
         value, error = known(estimate)
         assert error < 0.03 * exact
         assert abs(value - exact) < 4 * error
+    assert not correlation_warnings(found.kept, 25.0, 25.0)
+    short = suspension_diffusion(positions, interval, longest=2.0)
+    left, error = known(short.kept)
+    assert abs(left - keep**4) < 4 * error, "of displacements over an interval, c for each"
+    assert correlation_warnings(short.kept, 2.0, 2.0)[0].endswith("D is not that of long times")
+    assert correlation_warnings(short.kept, 2.0, 25.0)[0].endswith("times; run longer")
     with pytest.raises(ValueError, match="at least 128 are needed"):
         suspension_diffusion(positions[:100], interval, longest=25.0)
 
@@ -146,6 +158,29 @@ def test_g_of_independent_points_is_one_and_of_a_lattice_peaks_at_its_shells() -
     shells = 1.5 * np.sqrt([1, 2, 3, 4])
     assert len(lattice.peaks) == 4
     np.testing.assert_allclose(lattice.peaks, shells, atol=0.05)
+
+
+def test_the_error_of_the_peak_knows_of_frames_that_are_alike() -> None:
+    """Ten frames of the same places tell no more than a single frame does."""
+    random = np.random.default_rng(8)
+    places = random.uniform(0, 9, size=(200, 60, 3))
+
+    def height(positions: Array) -> tuple[float, float]:
+        particles = SimpleNamespace(positions=positions, steps=np.arange(len(positions)))
+        run = SimpleNamespace(
+            particles=lambda: particles,
+            equilibration_steps=0,
+            interval=1.0,
+            box=SimpleNamespace(sizes=BOX),
+            species=lambda: SimpleNamespace(radius=0.5),
+        )
+        entry = measured_g.measure(cast(RunDirectory, run)).entries["radial_distribution"]
+        return known(Estimate.of_json(entry["peak_height"]))
+
+    value, error = height(places[:40])
+    again, alike = height(np.repeat(places[:40], 10, axis=0))
+    assert again == pytest.approx(value)
+    assert alike == pytest.approx(error, rel=0.35)
 
 
 def test_false_alarms_of_normality_are_as_often_as_stated() -> None:

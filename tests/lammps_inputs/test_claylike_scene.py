@@ -212,3 +212,25 @@ def test_what_runs_but_is_inaccurate_is_told() -> None:
     assert "no longer slow against sound" in warnings
     relaxing = " ".join(made(particle_density=60000).warnings())
     assert "particles relax more slowly than the fluid" in relaxing
+
+
+@pytest.mark.parametrize(
+    ("fields", "warning"),
+    [
+        ({"cell_edge": "0.2 um"}, "cell_edge = 2e-07: spheres of 1.25 cells in radius"),
+        ({"cell_edge": "0.26 um"}, None),
+        (
+            {"potential": "hertz", "hertz": 10},
+            "hertz = 10.0: kBT presses spheres into each other by",
+        ),
+        ({"potential": "hertz", "hertz": 30}, None),
+        ({"surface_potential": 0.0, "hertz": 10}, "hertz = 10.0: kBT presses spheres"),
+        ({"surface_potential": 0.05, "kappa": 1e8, "hertz": 10}, None),  # a barrier of 600 kBT
+        ({"potential": "none", "hertz": 10}, None),
+    ],
+)
+def test_spheres_that_are_none_are_told(fields: dict[str, Any], warning: str | None) -> None:
+    """Too large for their cell, or so soft that they pass through each other."""
+    told = [line for line in made(**fields).warnings() if "order" not in line]
+    assert (warning is None) == (not told), told
+    assert warning is None or warning in told[0]

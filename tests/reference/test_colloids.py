@@ -104,7 +104,7 @@ def test_forces_equal_the_double_loop_and_add_up_to_the_walls(scene: Scene) -> N
     engine = ReferenceEngine(scene)
     forces = ColloidForces(system, solvent_of(scene))
     met = Counter[Interaction]()
-    for collision in range(150):
+    for collision in range(300):
         if scene is MIXTURE and collision % 10 == 0:  # stirred, so that all kinds meet
             engine.colloid_velocities[:] = 2 * random.normal(size=(system.particles, 3))
         engine.advance(1)
