@@ -14,11 +14,10 @@ from dataclasses import replace
 from pathlib import Path
 from statistics import quantiles
 
+from accuracy import Setting, full_table, measure, setting
 from engines import COMMANDS, DECKS, Deck
 from narrows.markdown import replace_block, table
-from pareto import STUDIES, Quantity, Setting, evaluate, measure_speeds, plan, setting
-from pareto import _name as name_of
-from srd_driver.sweep import run_all
+from pareto import STUDIES
 
 SIZES = ((2, 316), (2, 1000), (3, 46), (3, 100))  # dimensions, edge in cells of 10 particles
 NAMES = ("speed", "drift", "accuracy")
@@ -89,37 +88,18 @@ def drifts(collisions: int) -> str:
 
 def points(folder: Path, budget: float) -> str:
     """Values, deviations and errors of both, as in the chart; of v_s against double itself."""
-    rows = []
-    for number, study in enumerate(STUDIES[:3]):
-        quantities = [of for of in study.quantities if not isinstance(of.truth, Setting)]
-        if study.scene == "channel":
-            quantities += [
-                Quantity(of.name, of.measure, DOUBLE)
-                for of in study.quantities
-                if of.name == "settling speed"
-            ]
-        both = replace(
-            study, settings=(DOUBLE, SINGLE), quantities=tuple(quantities), converged=None
+    studies = []
+    for study in STUDIES[:3]:
+        quantities = [
+            replace(each, truth=DOUBLE) if isinstance(each.truth, Setting) else each
+            for each in study.quantities
+            if not isinstance(each.truth, Setting) or each.name == "settling speed"
+        ]
+        settings = (DOUBLE, SINGLE)
+        studies.append(
+            replace(study, settings=settings, quantities=tuple(quantities), converged=None)
         )
-        scenes = {name_of(number, each): (both.make(each), "mpc") for each in both.settings}
-        costs = measure_speeds(scenes, folder / f"speed_{number}.json")
-        planned = plan(both, number, folder, costs, budget)
-        failures = run_all([run for runs in planned.values() for run in runs], 1)
-        if failures:
-            raise SystemExit("\n".join(f"{one.run.folder}: {one.message}" for one in failures))
-        for result in evaluate(both, number, planned, costs):
-            rows.append(
-                (
-                    result.quantity.name,
-                    str(result.setting),
-                    f"{result.value:.4g}",
-                    f"{result.deviation:+.2%} +- {result.deviation_error:.2%}",
-                    f"{result.error(10) if result.deviation else result.statistical:.2%}",
-                    f"{costs[name_of(number, result.setting)] * 1e3:.3g}",
-                )
-            )
-    columns = ("quantity", "setting", "value", "deviation", "error after 10 s", "ms for t0")
-    return table(columns, rows)
+    return full_table(measure(tuple(studies), folder, budget, 1))
 
 
 def main() -> None:
