@@ -76,15 +76,19 @@ template <int D, class Real = double> struct Fluid {
     for (int i = 0; i < count; ++i) of_each[i] |= std::uint64_t{id_high[first + i]} << 32;
   }
 
-  double position(int axis, int i) const
+  double position(int axis, int i) const { return positions(axis)(i); }
+
+  // The same of all, for loops.
+  auto positions(int axis) const
   {
-    if constexpr (single) {
-      const auto &of = places[axis];
-      const double position = of.middle + of.length * x[axis][i];
-      return position + (position < 0 ? of.period : 0) - (position >= of.period ? of.period : 0);
-    } else {
-      return x[axis][i];
-    }
+    const auto *at = x[axis].data();
+    if constexpr (single)
+      return [at, of = places[axis]](int i) {
+        const double position = of.middle + of.length * at[i];
+        return position + (position < 0 ? of.period : 0) - (position >= of.period ? of.period : 0);
+      };
+    else
+      return [at](int i) -> double { return at[i]; };
   }
 
   Vector<D> velocity(int i) const

@@ -135,11 +135,13 @@ template <int D> class NearFluid {
     }
     for (int a = 0; a < D; ++a) {
       const double *centre = centres_[a].data();
+      const Real *v = fluid.v[a].data();
+      const auto position = fluid.positions(a);
       const double size = cells_.grid().box[a], per_size = turns_per_length_[a];
       for (int k = 0; k < count; ++k) {
-        const double separation = fluid.position(a, listed[k]) - centre[nearest[k]];
+        const double separation = position(listed[k]) - centre[nearest[k]];
         r2[k] += square_of(separation - std::rint(separation * per_size) * size);
-        speeds[k] += square_of(fluid.v[a][listed[k]]);
+        speeds[k] += square_of(v[listed[k]]);
       }
     }
     const double *cutoffs = cutoffs_.data(), usual = usual_, interval = interval_;
