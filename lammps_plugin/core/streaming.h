@@ -10,7 +10,9 @@
 
 namespace mpc {
 
-constexpr int MOST_BOUNCES = 100;    // in one step; thermal particles need one
+// In one step. Thermal particles need one, but where two walls meet, hundreds: to and fro along a
+// chord of the corner, which may be as short as chance will have it.
+constexpr int MOST_BOUNCES = 1000000;
 
 // First t with v t + a t^2 / 2 = distance (3.44 corrected), for a wall that is reached; of the two
 // forms of the root the one that subtracts nothing.

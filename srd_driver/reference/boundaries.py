@@ -14,7 +14,9 @@ from lammps_inputs.system import Array
 from srd_driver.reference.collision import Cells
 from srd_driver.reference.counter_random import CounterRandom, Stream
 from srd_driver.reference.faults import SimulationFault
-from srd_driver.reference.streaming import MOST_BOUNCES, contact_time
+from srd_driver.reference.streaming import contact_time
+
+MOST_BOUNCES = 10_000  # in one step; where two walls meet to and fro along a chord of the corner
 
 
 @dataclass(frozen=True)

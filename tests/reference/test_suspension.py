@@ -165,7 +165,17 @@ def test_two_pairs_of_walls() -> None:
     assert_allclose(x[:, 0], [1 + 0.3 * 6, 3.7 - 0.1 + 0.1, 3.5], atol=1e-12)
     assert_allclose(v[:, 0], [6, -1, -1])
     with pytest.raises(SimulationFault, match="fluid particle 0 meets the walls"):
-        stream(np.array([[1.0], [1.0], [1.0]]), np.array([[0.0], [1e4], [0.0]]), STILL, 1.0, tube)
+        stream(np.array([[1.0], [1.0], [1.0]]), np.array([[0.0], [1e6], [0.0]]), STILL, 1.0, tube)
+
+
+def test_in_a_corner_fluid_goes_to_and_fro() -> None:
+    """Along a chord of 0.001, crossed in 0.0005, from its middle: there again after 1.2."""
+    tube = Boundaries((4.0, 4.0, 4.0), (True, False, False))
+    half = 0.0005 / math.sqrt(2)
+    x, v = np.array([[1.0], [half], [half]]), math.sqrt(2) * np.array([[0.0], [1.0], [-1.0]])
+    stream(x, v, STILL, 1.2, tube)
+    assert_allclose(x[:, 0], [1, half, half], atol=1e-11)
+    assert_allclose(np.abs(v[:, 0]), [0, math.sqrt(2), math.sqrt(2)])
 
 
 def test_virtual_particles_move_with_their_walls() -> None:
