@@ -91,6 +91,7 @@ STUDIES = (
             *(setting("mpc", density=density) for density in (3, 30)),
             setting("mpc", collision_time=0.5, density=30, sampling_interval=1.0),
             setting("mpc", thermostat="none"),
+            setting("mpc", precision="single"),
             setting("mpc", width=16, duration=20),
             setting("reference"),
         ),
@@ -108,6 +109,7 @@ STUDIES = (
             *(setting("mpc", gravity=gravity) for gravity in (0.001, 0.01)),
             setting("srd", gravity=0.001),
             setting("mpc", collision_time=0.02),
+            setting("mpc", precision="single"),
             setting("mpc", width=50, gravity=0.001, equilibration=1000),
             setting("reference", equilibration=150),
         ),
@@ -126,6 +128,7 @@ STUDIES = (
         {"equilibration": 50},
         (
             *(setting("mpc", CAREFUL, md_steps_per_collision=steps) for steps in (15, 5, 3, 1)),
+            setting("mpc", CAREFUL, precision="single"),
             setting("mpc", gravity=0.3, md_steps_per_collision=5),
             *(
                 setting("mpc", thermostat=thermostat)

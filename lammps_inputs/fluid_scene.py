@@ -17,6 +17,7 @@ from lammps_inputs.system import (
     Clock,
     FlowField,
     Hydrodynamics,
+    Precision,
     Rotation,
     Solvent,
     System,
@@ -43,6 +44,9 @@ class FluidScene(Scene):
         description="on; or a random solvent: shuffle (velocities interchanged), bath (redrawn)",
     )
     thermostat: Thermostat = Field(default="layer", description="thermostat of the fluid")
+    precision: Precision = Field(
+        default="double", description="of the fluid's positions and velocities: double or single"
+    )
     flow_interval: NonNegative = Field(
         default=0.0, description="time that each flow field is averaged over; 0: none [t0]"
     )
@@ -74,6 +78,7 @@ class FluidScene(Scene):
             hydrodynamics=self.hydrodynamics,
             thermostat=self.thermostat,
             shear_wave=shear_wave,
+            precision=self.precision,
         )
 
     @cached_property

@@ -19,6 +19,7 @@ SIZES = ("length", "width", "height")  # what scenes call the edges of the box a
 LONGEST_LOOK = 10  # beats between two looks at a fluid: its velocities decorrelate in a few
 
 Hydrodynamics = Literal["on", "shuffle", "bath"]
+Precision = Literal["double", "single"]
 Thermostat = Literal["none", "layer", "monte_carlo", "maxwell_boltzmann", "rescale", "andersen"]
 Rotation = Literal["random_axis", "coordinate_axes"]
 Coupling = Literal["force", "reflection", "cell"]
@@ -379,6 +380,7 @@ class Solvent:
         drift_interval: collisions between removals of the total momentum; 0: never.
         cell: edge of a collision cell [a0].
         temperature: [kBT].
+        precision: of the fluid's state.
     """
 
     particles: int
@@ -393,6 +395,7 @@ class Solvent:
     drift_interval: int = 0
     cell: float = 1.0
     temperature: float = 1.0
+    precision: Precision = "double"
 
 
 class Placement(Protocol):

@@ -71,12 +71,14 @@ template <int D> void FixMPC<D>::init()
     error->all(FLERR, "fix mpc: the box must not change");
   if (!solver_) {
     const bool loading = !given_.load_file.empty();
-    make_solver(loading ? MpcState<D>::particles_in(lmp, given_.load_file) : given_.particles);
+    make_solver(loading ? MpcFluidFile<D>::particles_in(lmp, given_.load_file) : given_.particles);
     check_processes();
-    if (loading)
-      state_->load(given_.load_file);
-    else
-      state_->create(colloids_.all(), coupling());
+    guarded([&] {
+      if (loading)
+        fluid_file().load(given_.load_file);
+      else
+        state_->create(colloids_.all(), coupling());
+    });
     warn_of_density<D>(lmp, given_.density, solver_->particles(), given_.edge, colloids_.all(),
                        coupling());
   }
@@ -155,7 +157,11 @@ template <int D> void FixMPC<D>::make_solver(double particles)
   else if (given_.hydro == "bath")
     method.random_solvent = std::make_unique<mpc::BathSolvent<D>>(given_.temperature);
   method.coupling = make_coupling(field, method.walls.get());
-  solver_ = std::make_unique<mpc::Solver<D>>(grid, std::move(method), processes_);
+  method.thermal_speed = std::sqrt(given_.temperature);
+  if (given_.single)
+    solver_ = std::make_unique<mpc::Solver<D, float>>(grid, std::move(method), processes_);
+  else
+    solver_ = std::make_unique<mpc::Solver<D>>(grid, std::move(method), processes_);
   state_ = std::make_unique<MpcState<D>>(lmp, given_, *solver_, processes_);
   colloids_.set_coupling(coupling());
 }
@@ -166,7 +172,7 @@ template <int D> int FixMPC<D>::modify_param(int narg, char **arg)
   if (narg < 2) error->all(FLERR, "fix_modify save: needs a file name");
   if (!solver_ || open_)
     error->all(FLERR, "fix_modify save: the step must be a multiple of N = {}", given_.every);
-  state_->save(arg[1]);
+  fluid_file().save(arg[1]);
   return 2;
 }
 
@@ -175,17 +181,18 @@ template <int D> void FixMPC<D>::write_restart(FILE *file)
   if (!solver_ || open_)
     error->all(FLERR, "fix mpc: restart: the step {} must be a multiple of N = {}",
                update->ntimestep, given_.every);
-  state_->write_restart(file, processes_.everyones(colloids_.pulls),
-                        flow_ ? flow_->state() : std::vector<double>{});
+  MpcRestart<D>(lmp, given_, *solver_, *state_, processes_)
+      .write(file, processes_.everyones(colloids_.pulls),
+             flow_ ? flow_->state() : std::vector<double>{});
 }
 
 template <int D> void FixMPC<D>::restart(char *buffer)
 {
   guarded([&] {
-    const auto header = mpc::read_restart_header<D>(buffer, given_.seed);
+    const auto header = mpc::read_restart_header<D>(buffer, given_.seed, given_.single);
     make_solver(static_cast<double>(header.fluid.particles));
     check_processes();
-    auto restored = state_->restart(buffer);
+    auto restored = MpcRestart<D>(lmp, given_, *solver_, *state_, processes_).read(buffer);
     if (flow_ && !restored.average.empty() && !flow_->restore(restored.average))
       throw mpc::Fault("restart: its flow has not the bins of this fix");
     auto &pulls = colloids_.pulls;
@@ -242,8 +249,10 @@ template <int D> void FixMPC<D>::setup(int)
 template <int D> void FixMPC<D>::initial_integrate(int)
 {
   if (!open_) {
-    if (comm->nprocs > 1) solver_->redistribute(state_->lower(), state_->upper());
-    guarded([&] { solver_->begin_interval(colloids_.seen(), colloids_.speed()); });
+    guarded([&] {
+      if (comm->nprocs > 1) solver_->redistribute(state_->lower(), state_->upper());
+      solver_->begin_interval(colloids_.seen(), colloids_.speed());
+    });
     open_ = true;
   }
 }
@@ -276,10 +285,7 @@ template <int D> void FixMPC<D>::end_of_step()
     if (step % given_.profile_frequency == 0) profile_->write(solver_->particles());
   }
   if (flow_) {
-    if (step % given_.flow.every == 0) {
-      solver_->turn();
-      flow_->look(solver_->fluid(), solver_->grid());
-    }
+    if (step % given_.flow.every == 0) flow_->look(*solver_);
     if (step % given_.flow.frequency == 0) flow_->write(solver_->particles());
   }
   if (dump_) dump();
@@ -290,7 +296,7 @@ template <int D> void FixMPC<D>::dump()
 {
   if (open_ || update->ntimestep % given_.dump.every) return;
   solver_->turn();
-  dump_->write(solver_->fluid());
+  dump_->write(*solver_);
 }
 
 // Take the total momentum from all velocities alike.
@@ -330,8 +336,7 @@ template <int D> void FixMPC<D>::unpack_reverse_comm(int count, int *atoms, doub
 template <int D> const std::vector<mpc::Layer> &FixMPC<D>::layers()
 {
   if (layers_step_ != update->ntimestep) {
-    solver_->turn();
-    layers_ = mpc::layers<D>(solver_->fluid(), solver_->grid(), given_.bins, processes_);
+    layers_ = solver_->layers(given_.bins);
     layers_step_ = update->ntimestep;
   }
   return layers_;
@@ -346,8 +351,7 @@ template <int D> double FixMPC<D>::compute_scalar()
 template <int D> const mpc::Moments<D> &FixMPC<D>::moments()
 {
   if (moments_step_ != update->ntimestep) {
-    solver_->turn();
-    moments_ = mpc::moments<D>(solver_->fluid(), processes_);
+    moments_ = solver_->moments();
     moments_step_ = update->ntimestep;
   }
   return moments_;

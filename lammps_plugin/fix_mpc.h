@@ -5,14 +5,13 @@
 
 #include "fix.h"
 
-#include "core/moments.h"
-#include "core/profile.h"
 #include "core/solver.h"
 #include "mpc_arguments.h"
 #include "mpc_colloids.h"
 #include "mpc_dump.h"
 #include "mpc_flow.h"
 #include "mpc_profile.h"
+#include "mpc_restart.h"
 #include "mpc_state.h"
 #include "mpi_processes.h"
 
@@ -49,6 +48,7 @@ template <int D> class FixMPC : public Fix {
   std::unique_ptr<mpc::Coupling<D>> make_coupling(const mpc::Vector<D> &field,
                                                   const mpc::Walls<D> *) const;
   mpc::Coupling<D> *coupling() { return solver_->coupling(); }
+  MpcFluidFile<D> fluid_file() { return {lmp, *solver_, *state_, processes_}; }
   bool couples_every_step() { return coupling() && coupling()->every_step(); }
   void check_processes();
   void remove_momentum();
@@ -66,7 +66,7 @@ template <int D> class FixMPC : public Fix {
   std::unique_ptr<MpcProfile> profile_;    // or none
   std::unique_ptr<MpcFlow<D>> flow_;       // or none
   std::unique_ptr<MpcDump<D>> dump_;       // or none
-  std::unique_ptr<mpc::Solver<D>> solver_;
+  std::unique_ptr<mpc::AnySolver<D>> solver_;
   std::unique_ptr<MpcState<D>> state_;
   double interval_ = 0;
   bool open_ = false;        // within an interval

@@ -84,6 +84,8 @@ MpcArguments<D>::MpcArguments(LAMMPS *lmp, int narg, char **arg)
       axes = choice(values(1), "axis", {"random", "coordinate"}) == "random"
           ? mpc::Axes::Random
           : mpc::Axes::Coordinate;
+    } else if (keyword == "precision") {
+      single = choice(values(1), "precision", {"double", "single"}) == "single";
     } else if (keyword == "shift") {
       shifted = choice(values(1), "shift", {"yes", "no"}) == "yes";
     } else if (keyword == "tstat") {
@@ -201,6 +203,11 @@ MpcArguments<D>::MpcArguments(LAMMPS *lmp, int narg, char **arg)
     error->all(FLERR, "fix mpc: create {}: must be a whole number, at most 2^48", particles);
   if (walls && virtual_particles && density == 0)
     error->all(FLERR, "fix mpc: density: needed for the virtual particles of the walls");
+  for (const auto &[keyword, given] : std::map<std::string, bool>{{"hydro " + hydro, hydro != "on"},
+                                                                  {"reflect", !radii.empty()},
+                                                                  {"collide", in_collision}})
+    if (given && single)
+      error->all(FLERR, "fix mpc: precision single: {} is in double precision only", keyword);
   int pairs = 0;
   for (int a = 0; a < D; ++a) pairs += !domain->periodicity[a];
   if (tstat == "layer" && pairs > 1)

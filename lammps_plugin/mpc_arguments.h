@@ -21,6 +21,7 @@ template <int D> struct MpcArguments {
   int colloid_bit = 0;
   double temperature, edge;
   std::uint64_t seed;
+  bool single = false;       // precision of the fluid's state
   double particles = 0;      // to create, or
   std::string load_file;
   double density = 0;

@@ -28,11 +28,11 @@ template <int D> MpcDump<D>::~MpcDump()
 
 // The particles to write, of all processes, on the first.
 template <int D>
-std::vector<Particle<D>> MpcDump<D>::chosen(const mpc::Fluid<D> &fluid) const
+std::vector<Particle<D>> MpcDump<D>::chosen(const mpc::AnySolver<D> &solver) const
 {
   std::vector<Particle<D>> mine;
-  for (int i = 0; i < fluid.size(); ++i)
-    if (fluid.number(i) % given_.one_in == 0) mine.push_back(fluid.particle(i));
+  for (int i = 0; i < solver.size(); ++i)
+    if (solver.number(i) % given_.one_in == 0) mine.push_back(solver.particle(i));
   if (comm->nprocs == 1) return mine;
   constexpr int record = sizeof(Particle<D>) / sizeof(double);
   bigint values = static_cast<bigint>(mine.size()) * record, all_values = 0;
@@ -50,9 +50,9 @@ std::vector<Particle<D>> MpcDump<D>::chosen(const mpc::Fluid<D> &fluid) const
   return all;
 }
 
-template <int D> void MpcDump<D>::write(const mpc::Fluid<D> &fluid)
+template <int D> void MpcDump<D>::write(const mpc::AnySolver<D> &solver)
 {
-  auto particles = chosen(fluid);
+  auto particles = chosen(solver);
   if (comm->me != 0) return;
   std::sort(particles.begin(), particles.end(),
             [](const auto &a, const auto &b) { return a.id < b.id; });

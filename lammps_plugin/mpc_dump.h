@@ -2,7 +2,7 @@
 
 #pragma once
 
-#include "core/fluid.h"
+#include "core/solver.h"
 
 #include "pointers.h"
 
@@ -26,10 +26,10 @@ template <int D> class MpcDump : protected Pointers {
   ~MpcDump() override;
 
   // A frame of the fluid as it is now, in the order of the particles' numbers.
-  void write(const mpc::Fluid<D> &);
+  void write(const mpc::AnySolver<D> &);
 
  private:
-  std::vector<mpc::Particle<D>> chosen(const mpc::Fluid<D> &) const;
+  std::vector<mpc::Particle<D>> chosen(const mpc::AnySolver<D> &) const;
 
   const DumpArguments &given_;
   FILE *file_ = nullptr;

@@ -55,9 +55,9 @@ template <int D> mpc::Vector<D> MpcFlow<D>::origin(const mpc::Grid<D> &grid) con
   return origin;
 }
 
-template <int D> void MpcFlow<D>::look(const mpc::Fluid<D> &fluid, const mpc::Grid<D> &grid)
+template <int D> void MpcFlow<D>::look(mpc::AnySolver<D> &solver)
 {
-  sums_.look(fluid, grid, origin(grid));
+  solver.look(sums_, origin(solver.grid()));
 }
 
 template <int D> void MpcFlow<D>::write(double particles)

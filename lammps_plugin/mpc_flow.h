@@ -2,7 +2,7 @@
 
 #pragma once
 
-#include "core/flow.h"
+#include "core/solver.h"
 
 #include "pointers.h"
 
@@ -27,7 +27,7 @@ template <int D> class MpcFlow : protected Pointers {
   ~MpcFlow() override;
 
   // Add the fluid as it is now.
-  void look(const mpc::Fluid<D> &, const mpc::Grid<D> &);
+  void look(mpc::AnySolver<D> &);
 
   // The mean of the looks since the last time, all particles counted.
   void write(double particles);

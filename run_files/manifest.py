@@ -123,6 +123,7 @@ class Solvent(Part):
     drift_interval: Whole = 0
     cell: Positive = 1.0
     temperature: Positive = 1.0
+    precision: Literal["double", "single"] = "double"
     viscosity_theory: float | None
 
 

@@ -10,7 +10,7 @@ from run_files.fluid_file import Fluid
 from run_files.progress import Progress
 from run_files.writing import replacing
 from srd_driver.dump import write_frame
-from srd_driver.reference import ReferenceEngine, SuspensionEngine
+from srd_driver.reference import ReferenceEngine, SingleEngine, SuspensionEngine
 
 
 class ReferenceSession:
@@ -25,6 +25,8 @@ class ReferenceSession:
         solvent = scene.system.solvent
         by_force = solvent is None or solvent.coupling == "force"
         engine = ReferenceEngine if by_force else SuspensionEngine
+        if solvent and solvent.precision == "single":
+            engine = SingleEngine
         (self._table,) = (each for each in scene.system.outputs if each.kind == "table")
         if progress.checkpoint:
             self._engine = engine.load(scene, directory / progress.checkpoint)

@@ -103,6 +103,16 @@ class Engine(ABC):
             if drive.balanced:
                 yield f"{drive.variable} of {drive.target}: engine {self.name} cannot balance it"
 
+    def what_single_has_not(self, system: System) -> Iterator[str]:
+        """A line for each property of a fluid that is in double precision only."""
+        fluid = system.solvent
+        if not fluid or fluid.precision == "double":
+            return
+        if fluid.hydrodynamics != "on":
+            yield f"precision = 'single': needs hydrodynamics = 'on', not {fluid.hydrodynamics!r}"
+        if fluid.coupling != "force":
+            yield f"precision = 'single': needs coupling = 'force', not {fluid.coupling!r}"
+
     def needs_known_tables(self, system: System, known: Collection[str]) -> Iterator[str]:
         """A line for each table with a column that the engine does not tell."""
         for output in system.outputs:

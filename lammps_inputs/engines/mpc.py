@@ -58,6 +58,7 @@ class Mpc(LammpsEngine):
         yield from self.needs_known_tables(system, known_columns)
         yield from lammps.one_pair_style(system)
         yield from force_problems(system)
+        yield from self.what_single_has_not(system)
         fluid = system.solvent
         if (
             fluid
@@ -117,6 +118,8 @@ class Mpc(LammpsEngine):
         if system.box.dimensions == 3:
             options.append(f"axis {fluid.rotation.partition('_')[0]}")
         options += [f"tstat {fluid.thermostat}", f"hydro {fluid.hydrodynamics}"]
+        if fluid.precision != "double":
+            options.append(f"precision {fluid.precision}")
         for drive in system.drives_on(FLUID):
             options.append(f"field {' '.join(_component(drive, way) for way in drive.direction)}")
         types = system.types()

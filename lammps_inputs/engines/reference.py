@@ -31,6 +31,7 @@ class Reference(Engine):
         yield from self.needs_slit_or_periodic(system)
         yield from self.no_moving_walls(system)
         yield from self.no_balanced_drives(system)
+        yield from self.what_single_has_not(system)
         yield from self.needs_known_tables(system, FLUID_AVERAGES.columns)
         for interaction in system.interactions:
             if isinstance(interaction.potential, Dlvo):

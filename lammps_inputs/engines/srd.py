@@ -48,6 +48,8 @@ class Srd(LammpsEngine):
             return
         if fluid.angle != 90:
             yield f"angle = {fluid.angle!r}: fix srd rotates by 90 degrees only"
+        if fluid.precision != "double":
+            yield f"precision = {fluid.precision!r}: fix srd has double only"
         if fluid.hydrodynamics != "on":
             given = fluid.hydrodynamics
             yield f"hydrodynamics = {given!r}: fix srd cannot switch them off; must be 'on'"

@@ -57,9 +57,11 @@ template <int D> class Coupling {
   // Colloids as they stand; none becomes faster than the speed given before the interval ends.
   virtual void begin(const Grid<D> &, const Colloids &, double /*speed*/) {}
 
-  // At every MD step. Take from the particles begin ... end - 1; their indices join taken().
+  // At every MD step. Take from the particles begin ... end - 1; their indices join taken(). The
+  // fluid is in double or in single precision, if that can be.
   virtual bool every_step() const { return false; }
   virtual void take(const Fluid<D> &, int /*begin*/, int /*end*/) {}
+  virtual void take(const Fluid<D, float> &, int /*begin*/, int /*end*/) {}
   const std::vector<int> &taken() const { return taken_; }
   virtual void ready() {}
 
@@ -68,6 +70,7 @@ template <int D> class Coupling {
   virtual void forces(const Colloids &, std::vector<Push<D>> & /*on_colloids*/) {}
   virtual void step(double /*time*/, const Colloids &, std::vector<Push<D>> & /*on_colloids*/) {}
   virtual void give_back(Fluid<D> &) {}
+  virtual void give_back(Fluid<D, float> &) {}
 
   // After the flight, which then is at the interval's end. Colloids as they are now, and the grid of
   // the next collision; then which of the particles begin ... end - 1 have met a colloid, and

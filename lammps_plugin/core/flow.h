@@ -21,12 +21,13 @@ template <int D> class FlowSums {
   }
 
   // Add this process's particles, seen from an origin in the box.
-  void look(const Fluid<D> &fluid, const Grid<D> &grid, const Vector<D> &origin)
+  template <class Real>
+  void look(const Fluid<D, Real> &fluid, const Grid<D> &grid, const Vector<D> &origin)
   {
     for (int i = 0; i < fluid.size(); ++i) {
       std::size_t bin = 0;
       for (int a = 0; a < D; ++a) {
-        double at = fluid.x[a][i] - origin[a];
+        double at = fluid.position(a, i) - origin[a];
         if (at < 0) at += grid.box[a];    // of a periodic axis: others have the origin 0
         const int row = static_cast<int>(at * bins_[a] / grid.box[a]);
         bin = bin * bins_[a] + std::min(row, bins_[a] - 1);

@@ -60,7 +60,9 @@ struct Apart {
 // the particles, or the file that they are in, and a checksum.
 struct RestartHeader {
   FluidHeader fluid;
-  std::int64_t processes, pulls, averages;
+  std::int32_t processes;
+  std::int32_t single;             // whether the state is in single precision; 0 in older ones
+  std::int64_t pulls, averages;
   std::uint64_t seed, checksum;    // the latter of what stands before it
 
   std::uint64_t expected() const
@@ -72,18 +74,20 @@ struct RestartHeader {
   bool apart() const { return !std::memcmp(fluid.magic, RESTART_APART, sizeof RESTART_APART); }
 };
 
-inline RestartHeader restart_header(bool apart, int dimension, std::int64_t particles,
-                                    std::int64_t collisions, std::int64_t processes,
-                                    std::int64_t pulls, std::int64_t averages, std::uint64_t seed)
+inline RestartHeader restart_header(bool apart, bool single, int dimension, std::int64_t particles,
+                                    std::int64_t collisions, int processes, std::int64_t pulls,
+                                    std::int64_t averages, std::uint64_t seed)
 {
-  RestartHeader header{{{}, dimension, particles, collisions}, processes, pulls, averages, seed, 0};
+  RestartHeader header{
+      {{}, dimension, particles, collisions}, processes, single, pulls, averages, seed, 0};
   std::memcpy(header.fluid.magic, apart ? RESTART_APART : RESTART, sizeof RESTART);
   header.checksum = header.expected();
   return header;
 }
 
-// The header of a restart of D dimensions and that seed; the buffer holds at least one.
-template <int D> RestartHeader read_restart_header(const char *buffer, std::uint64_t seed)
+// The header of a restart of D dimensions, that seed and precision; the buffer holds at least one.
+template <int D>
+RestartHeader read_restart_header(const char *buffer, std::uint64_t seed, bool single)
 {
   RestartHeader header;
   std::memcpy(&header, buffer, sizeof header);
@@ -94,17 +98,20 @@ template <int D> RestartHeader read_restart_header(const char *buffer, std::uint
   if (header.seed != seed)
     throw Fault("restart: of the seed " + std::to_string(header.seed) + ", not " +
                 std::to_string(seed));
+  if (header.single != single)
+    throw Fault(std::string("restart: of precision ") + (header.single ? "single" : "double") +
+                ", not " + (single ? "single" : "double") + "; fix_modify save and load change it");
   return header;
 }
 
 // Visit the pulls, the numbers of an average, then the particles of a restart or the word of where
 // they are, once all are known to be what was written.
 template <int D, class Pull, class OnPull, class OnAverage, class OnParticle, class OnApart>
-RestartHeader read_restart(const char *buffer, std::uint64_t seed, const OnPull &on_pull,
-                           const OnAverage &on_average, const OnParticle &on_particle,
-                           const OnApart &on_apart)
+RestartHeader read_restart(const char *buffer, std::uint64_t seed, bool single,
+                           const OnPull &on_pull, const OnAverage &on_average,
+                           const OnParticle &on_particle, const OnApart &on_apart)
 {
-  const auto header = read_restart_header<D>(buffer, seed);
+  const auto header = read_restart_header<D>(buffer, seed, single);
   const char *next = buffer + sizeof header;
   const std::size_t bytes =
       header.pulls * sizeof(Pull) + header.averages * sizeof(double) +

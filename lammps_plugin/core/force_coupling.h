@@ -59,11 +59,10 @@ template <int D> class ForceCoupling : public Coupling<D> {
     taken_.clear();
   }
 
-  void take(const Fluid<D> &fluid, int begin, int end) override
+  void take(const Fluid<D> &fluid, int begin, int end) override { take_from(fluid, begin, end); }
+  void take(const Fluid<D, float> &fluid, int begin, int end) override
   {
-    near_.take(fluid, begin, end);
-    const auto &candidates = near_.candidates();
-    for (auto k = taken_.size(); k < candidates.size(); ++k) taken_.push_back(candidates[k].index);
+    take_from(fluid, begin, end);
   }
 
   // Lay out what was taken by colloid, and find the forces on it. What belongs to a colloid begins
@@ -127,14 +126,8 @@ template <int D> class ForceCoupling : public Coupling<D> {
     if (evaluate<true>(time, colloids, on_colloids)) pair_fast();
   }
 
-  void give_back(Fluid<D> &fluid) override
-  {
-    for (std::size_t k = 0; k < taken_.size(); ++k)
-      for (int a = 0; a < D; ++a) {
-        fluid.x[a][taken_[k]] = x_[a][place_[k]];
-        fluid.v[a][taken_[k]] = v_[a][place_[k]];
-      }
-  }
+  void give_back(Fluid<D> &fluid) override { give_back_to(fluid); }
+  void give_back(Fluid<D, float> &fluid) override { give_back_to(fluid); }
 
  private:
   static constexpr double CORE = 0.5;    // of sigma: an energy of 16000 epsilon
@@ -150,6 +143,22 @@ template <int D> class ForceCoupling : public Coupling<D> {
   struct Span {
     int first, last, end;
   };
+
+  template <class Real> void take_from(const Fluid<D, Real> &fluid, int begin, int end)
+  {
+    near_.take(fluid, begin, end);
+    const auto &candidates = near_.candidates();
+    for (auto k = taken_.size(); k < candidates.size(); ++k) taken_.push_back(candidates[k].index);
+  }
+
+  template <class Real> void give_back_to(Fluid<D, Real> &fluid) const
+  {
+    for (std::size_t k = 0; k < taken_.size(); ++k)
+      for (int a = 0; a < D; ++a) {
+        fluid.set_position(a, taken_[k], x_[a][place_[k]]);
+        fluid.v[a][taken_[k]] = static_cast<Real>(v_[a][place_[k]]);
+      }
+  }
 
   static double square_of(double a) { return a * a; }
 

@@ -17,7 +17,7 @@ template <int D> struct Moments {
 };
 
 // Of all processes; 0 where all velocities are the same.
-template <int D> Moments<D> moments(const Fluid<D> &fluid, Processes &processes)
+template <int D, class Real> Moments<D> moments(const Fluid<D, Real> &fluid, Processes &processes)
 {
   std::array<double, 4 * D + 1> sums{};    // of the powers 1 to 4 of each component; particles
   for (int a = 0; a < D; ++a) {

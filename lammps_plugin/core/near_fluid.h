@@ -73,7 +73,7 @@ template <int D> class NearFluid {
     cells_.finish();
   }
 
-  void take(const Fluid<D> &fluid, int begin, int end)
+  template <class Real> void take(const Fluid<D, Real> &fluid, int begin, int end)
   {
     if (colloids_.empty()) return;
     list(fluid, begin, end);
@@ -103,7 +103,7 @@ template <int D> class NearFluid {
 
   // List the particles that have colloids near their cells, and the fast ones. Without branches: who is
   // in the list follows no pattern.
-  void list(const Fluid<D> &fluid, int begin, int end)
+  template <class Real> void list(const Fluid<D, Real> &fluid, int begin, int end)
   {
     const double usual = usual_;
     int fast = 0;
@@ -121,7 +121,7 @@ template <int D> class NearFluid {
 
   // Keep those of the list that may come within the cutoff of the only colloid of their cell, or
   // whose cell has several, or that are fast: these must be looked at more closely.
-  void look(const Fluid<D> &fluid)
+  template <class Real> void look(const Fluid<D, Real> &fluid)
   {
     const int count = listed_count_;
     for (auto *of_each : {&speeds_, &squares_}) of_each->assign(count, 0);
@@ -134,10 +134,12 @@ template <int D> class NearFluid {
       nearest[k] = colloid[k] < 0 ? 0 : colloid[k];
     }
     for (int a = 0; a < D; ++a) {
-      const double *x = fluid.x[a].data(), *v = fluid.v[a].data(), *centre = centres_[a].data();
+      const double *centre = centres_[a].data();
+      const Real *v = fluid.v[a].data();
+      const auto position = fluid.positions(a);
       const double size = cells_.grid().box[a], per_size = turns_per_length_[a];
       for (int k = 0; k < count; ++k) {
-        const double separation = x[listed[k]] - centre[nearest[k]];
+        const double separation = position(listed[k]) - centre[nearest[k]];
         r2[k] += square_of(separation - std::rint(separation * per_size) * size);
         speeds[k] += square_of(v[listed[k]]);
       }
@@ -157,7 +159,7 @@ template <int D> class NearFluid {
     listed_count_ = kept;
   }
 
-  static double square_speed(const Fluid<D> &fluid, int i)
+  template <class Real> static double square_speed(const Fluid<D, Real> &fluid, int i)
   {
     double speed = 0;
     for (int a = 0; a < D; ++a) speed += square_of(fluid.v[a][i]);
@@ -174,7 +176,7 @@ template <int D> class NearFluid {
 
   // Take a particle if it could come within a cutoff, and pair it. Its cell lists the images of
   // colloids that are near; a fast one meets all images, and so must itself be the one in its cell.
-  void consider(const Fluid<D> &fluid, int i)
+  template <class Real> void consider(const Fluid<D, Real> &fluid, int i)
   {
     const auto &grid = cells_.grid();
     auto particle = fluid.particle(i);

@@ -13,27 +13,27 @@ struct Layer {
 };
 
 // Of all processes.
-template <int D>
-std::vector<Layer> layers(const Fluid<D> &fluid, const Grid<D> &grid, int bins, Processes &processes)
+template <int D, class Real>
+std::vector<Layer> layers(const Fluid<D, Real> &fluid, const Grid<D> &grid, int bins,
+                          Processes &processes)
 {
   constexpr int width = D + 2;    // momentum, squares, count
   constexpr int copies = 4;       // of a sum: particles of a layer often follow each other
-  std::vector<CellSum<D>> of(copies * bins);
+  std::vector<std::array<double, width>> of(copies * bins);
   const double per_depth = bins / grid.box[1];
   for (int i = 0; i < fluid.size(); ++i) {
-    const int bin = std::min(static_cast<int>(fluid.x[1][i] * per_depth), bins - 1);
+    const int bin = std::min(static_cast<int>(fluid.position(1, i) * per_depth), bins - 1);
     auto &sum = of[copies * bin + i % copies];
-    if constexpr (D == 2)
-      sum.add(fluid.v[0][i], fluid.v[1][i]);
-    else
-      sum.add(fluid.v[0][i], fluid.v[1][i], fluid.v[2][i]);
+    for (int a = 0; a < D; ++a) {
+      const double v = fluid.v[a][i];
+      sum[a] += v;
+      sum[D] += v * v;
+    }
+    sum[D + 1] += 1;
   }
   std::vector<double> sums(bins * width);
-  for (int k = 0; k < copies * bins; ++k) {
-    double *sum = &sums[k / copies * width];
-    for (int a = 0; a < D; ++a) sum[a] += of[k].momentum[a];
-    for (int n = 0; n < 2; ++n) sum[D + n] += of[k].squares_and_count[n];
-  }
+  for (int k = 0; k < copies * bins; ++k)
+    for (int n = 0; n < width; ++n) sums[k / copies * width + n] += of[k][n];
   processes.sum(sums.data(), bins * width);
 
   std::vector<Layer> layers(bins);

@@ -12,10 +12,14 @@
 #pragma once
 
 #include "coupling.h"
+#include "double.h"
+#include "flow.h"
 #include "lanes.h"
 #include "migration.h"
+#include "moments.h"
+#include "profile.h"
 #include "random_solvent.h"
-#include "streaming.h"
+#include "single.h"
 #include "thermostat.h"
 #include "tile_order.h"
 
@@ -33,25 +37,74 @@ template <int D> struct Method {
   std::unique_ptr<Thermostat<D>> thermostat;         // or none
   std::unique_ptr<RandomSolvent<D>> random_solvent;  // or none
   std::unique_ptr<Coupling<D>> coupling;             // or none
+  double thermal_speed = 1;
 };
 
-template <int D> class Solver {
+// A solver as its host sees it, in either precision.
+template <int D> class AnySolver {
+ public:
+  virtual ~AnySolver() = default;
+
+  virtual const Grid<D> &grid() const = 0;
+  virtual Coupling<D> *coupling() const = 0;
+  virtual std::uint64_t collisions() const = 0;
+  virtual double particles() const = 0;    // of all processes
+
+  // Make room for the fluid as it was after so many collisions; then add all particles, in
+  // whichever order, and count them: each process keeps its own.
+  virtual void reset(std::uint64_t collisions, const std::array<int, D> &lower,
+                     const std::array<int, D> &upper) = 0;
+  virtual void add(Particle<D>) = 0;
+  virtual void count() = 0;
+
+  // Take over other cells, between intervals.
+  virtual void redistribute(const std::array<int, D> &lower, const std::array<int, D> &upper) = 0;
+
+  virtual void begin_interval(const std::vector<Colloid<D>> &, double colloid_speed) = 0;
+  virtual void end_interval(const std::vector<Colloid<D>> & = {}) = 0;
+
+  // Let the coupling know the forces between intervals; nothing moves.
+  virtual void find_near(const std::vector<Colloid<D>> &, double colloid_speed) = 0;
+
+  // Velocities as they are after the last collision. Then this process's particles may be seen.
+  virtual void turn() = 0;
+  virtual int size() const = 0;
+  virtual std::uint64_t number(int) const = 0;
+  virtual Particle<D> particle(int) const = 0;
+
+  // Of all processes.
+  virtual Vector<D> momentum() = 0;
+  virtual std::vector<Layer> layers(int bins) = 0;
+  virtual Moments<D> moments() = 0;
+
+  // That the walls have taken up in the last interval and its collision, of all processes.
+  virtual FaceVectors<D> momentum_of_walls() = 0;
+
+  virtual void look(FlowSums<D> &, const Vector<D> &origin) = 0;
+  virtual void zero_momentum() = 0;
+  virtual void add_velocity(const Vector<D> &) = 0;
+
+  virtual double memory() const = 0;    // in bytes, on this process
+};
+
+template <int D, class Real = double> class Solver : public AnySolver<D> {
  public:
   Solver(Grid<D> grid, Method<D> method, Processes &processes)
     : grid_(grid), method_(std::move(method)), processes_(processes)
   {
   }
 
-  const Grid<D> &grid() const { return grid_; }
-  const Fluid<D> &fluid() const { return fluid_; }
-  Coupling<D> *coupling() const { return method_.coupling.get(); }
-  std::uint64_t collisions() const { return collisions_; }
-  double particles() const { return particles_; }
+  const Grid<D> &grid() const override { return grid_; }
+  const Fluid<D, Real> &fluid() const { return fluid_; }
+  Coupling<D> *coupling() const override { return method_.coupling.get(); }
+  std::uint64_t collisions() const override { return collisions_; }
+  double particles() const override { return particles_; }
+  int size() const override { return fluid_.size(); }
+  std::uint64_t number(int i) const override { return fluid_.number(i); }
+  Particle<D> particle(int i) const override { return fluid_.particle(i); }
 
-  // Make room for the fluid as it was after so many collisions; then add all particles, in
-  // whichever order, and count them: each process keeps its own.
   void reset(std::uint64_t collisions, const std::array<int, D> &lower,
-             const std::array<int, D> &upper)
+             const std::array<int, D> &upper) override
   {
     fluid_.clear();
     turning_ = redrawing_ = false;
@@ -61,21 +114,20 @@ template <int D> class Solver {
     if (collisions > 0) draw_shift(collisions - 1);
   }
 
-  void add(Particle<D> particle)
+  void add(Particle<D> particle) override
   {
     for (int a = 0; a < D; ++a) particle.x[a] = wrapped<D>(grid_, a, particle.x[a]);
     const int cell = grid_.local(particle.x);
     if (cell >= 0) fluid_.append(particle, cell);
   }
 
-  void count()
+  void count() override
   {
     particles_ = fluid_.size();
     processes_.sum(&particles_, 1);
   }
 
-  // Take over other cells, between intervals.
-  void redistribute(const std::array<int, D> &lower, const std::array<int, D> &upper)
+  void redistribute(const std::array<int, D> &lower, const std::array<int, D> &upper) override
   {
     if (!processes_.any(lower != grid_.lower || upper != grid_.upper)) return;
     for (int a = 0; a < D; ++a)
@@ -88,29 +140,28 @@ template <int D> class Solver {
     migrate();
   }
 
-  // Velocities as they are after the last collision.
-  void turn()
+  void turn() override
   {
     renew(0, fluid_.size());
     turning_ = redrawing_ = false;
   }
 
-  void zero_momentum()
+  void zero_momentum() override
   {
     Vector<D> mean = momentum();
     for (int a = 0; a < D; ++a)
-      for (double &component : fluid_.v[a]) component -= mean[a] / particles_;
+      for (auto &component : fluid_.v[a])
+        component = static_cast<Real>(component - mean[a] / particles_);
   }
 
-  void add_velocity(const Vector<D> &change)
+  void add_velocity(const Vector<D> &change) override
   {
     turn();
     for (int a = 0; a < D; ++a)
-      for (double &component : fluid_.v[a]) component += change[a];
+      for (auto &component : fluid_.v[a]) component = static_cast<Real>(component + change[a]);
   }
 
-  // Of all processes.
-  Vector<D> momentum()
+  Vector<D> momentum() override
   {
     turn();
     Vector<D> total{};
@@ -123,8 +174,25 @@ template <int D> class Solver {
     return total;
   }
 
-  // That the walls have taken up in the last interval and its collision, of all processes.
-  FaceVectors<D> momentum_of_walls()
+  std::vector<Layer> layers(int bins) override
+  {
+    turn();
+    return mpc::layers(fluid_, grid_, bins, processes_);
+  }
+
+  Moments<D> moments() override
+  {
+    turn();
+    return mpc::moments(fluid_, processes_);
+  }
+
+  void look(FlowSums<D> &sums, const Vector<D> &origin) override
+  {
+    turn();
+    sums.look(fluid_, grid_, origin);
+  }
+
+  FaceVectors<D> momentum_of_walls() override
   {
     FaceVectors<D> total{};
     if (method_.walls) total = method_.walls->taken();
@@ -132,8 +200,7 @@ template <int D> class Solver {
     return total;
   }
 
-  // Let the coupling know the forces between intervals; nothing moves.
-  void find_near(const std::vector<Colloid<D>> &colloids, double colloid_speed)
+  void find_near(const std::vector<Colloid<D>> &colloids, double colloid_speed) override
   {
     turn();
     method_.coupling->begin(grid_, colloids, colloid_speed);
@@ -141,7 +208,7 @@ template <int D> class Solver {
     method_.coupling->ready();
   }
 
-  void begin_interval(const std::vector<Colloid<D>> &colloids, double colloid_speed)
+  void begin_interval(const std::vector<Colloid<D>> &colloids, double colloid_speed) override
   {
     if (collisions_ % SORT_INTERVAL == 0) tiles_.sort(fluid_, grid_);
     if (method_.walls) method_.walls->forget();
@@ -152,7 +219,7 @@ template <int D> class Solver {
     if (coupling) coupling->ready();
   }
 
-  void end_interval(const std::vector<Colloid<D>> &colloids = {})
+  void end_interval(const std::vector<Colloid<D>> &colloids = {}) override
   {
     if (reflecting()) {
       method_.coupling->meet(grid_, colloids, {method_.seed, collisions_});
@@ -174,16 +241,18 @@ template <int D> class Solver {
     collide(colloids);
   }
 
-  // In bytes, on this process.
-  double memory() const
+  double memory() const override
   {
-    return fluid_.bytes() + sums_.of.capacity() * (1.0 * sizeof(CellSum<D>) + sizeof(Turn<D>)) +
-        tiles_.bytes() + (method_.random_solvent ? method_.random_solvent->bytes() : 0);
+    return fluid_.bytes() + sums_.bytes() + turns_.capacity() * 1.0 * sizeof(KeptTurn) +
+        exact_turns_.capacity() * 1.0 * sizeof(Turn<D>) + tiles_.bytes() +
+        (method_.random_solvent ? method_.random_solvent->bytes() : 0);
   }
 
  private:
+  static constexpr bool single = Fluid<D, Real>::single;
+  using KeptTurn = std::conditional_t<single, SingleTurn<D>, Turn<D>>;
+
   static constexpr int BLOCK = 512;           // particles; their state fits the first-level cache
-  static constexpr int AHEAD = 32;            // particles
   static constexpr int SORT_INTERVAL = 64;    // collisions, in which a particle moves a few cells
   static constexpr int STRAY = -1, TAKEN = -2;    // instead of a cell
 
@@ -197,11 +266,14 @@ template <int D> class Solver {
     return joining() || !method_.random_solvent || !method_.random_solvent->replaces_collision();
   }
 
+  // Whether a thermostat changes what turns do, and needs the squares of the velocities.
+  bool scales() const { return method_.thermostat && !method_.thermostat->redraws(); }
+
   // All that the coupling does not take, to the end of the interval and into the sums of the cells.
   void move()
   {
     auto *coupling = method_.coupling.get();
-    if (collides()) std::fill(sums_.of.begin(), sums_.of.end(), CellSum<D>{});
+    if (collides()) sums_.clear();
     strays_.clear();
     held_.clear();
     for (int begin = 0; begin < fluid_.size(); begin += BLOCK) {
@@ -225,24 +297,20 @@ template <int D> class Solver {
     grid_.lower = lower;
     grid_.upper = upper;
     sums_.of.assign(grid_.cells(), {});
+    if (D == 3 && scales()) sums_.squares.assign(grid_.cells(), 0);
     sums_.guests.clear();
     turns_.assign(grid_.cells(), {});
+    if constexpr (single) {
+      fluid_.places = places_of(grid_);
+      if (scales()) exact_turns_.assign(grid_.cells(), {});
+    }
   }
 
   void draw_shift(std::uint64_t collision)
   {
-    if (method_.shifted) grid_.draw_shift({method_.seed, collision});
-  }
-
-  // Ask for what the particle a few further on needs of its cell: caches do not foresee it. Inlined
-  // always, as GCC drops calls that do nothing else.
-  template <class Value>
-  __attribute__((always_inline)) inline void prefetch(const Array<Value> &of_cells, int i) const
-  {
-    const int cell = fluid_.cell[std::min(i + AHEAD, fluid_.size() - 1)];
-    const auto *value = reinterpret_cast<const char *>(of_cells.data() + cell);
-    for (std::size_t line = 0; line < sizeof(Value); line += CACHE_LINE)
-      __builtin_prefetch(value + line, 1);
+    if (!method_.shifted) return;
+    grid_.draw_shift({method_.seed, collision});
+    if constexpr (single) round_shift(grid_);
   }
 
   __attribute__((always_inline)) inline void prefetch_state(int i) const
@@ -258,92 +326,73 @@ template <int D> class Solver {
   void renew(int begin, int end)
   {
     if (turning_) turn(begin, end);
-    if (redrawing_) method_.random_solvent->redraw(fluid_, begin, end);
+    if constexpr (!single)
+      if (redrawing_) method_.random_solvent->redraw(fluid_, begin, end);
   }
 
-  void turn(int begin, int end)
-  {
-    const Turn<D> *turns = turns_.data();
-    const std::int32_t *cell = fluid_.cell.data();
-    double *__restrict vx = fluid_.v[0].data();
-    double *__restrict vy = fluid_.v[1].data();
-    if constexpr (D == 2) {
-      for (int i = begin; i < end; ++i) {
-        const auto v = turns[cell[i]].apply(vx[i], vy[i]);
-        vx[i] = v[0];
-        vy[i] = v[1];
-      }
-    } else {
-      double *__restrict vz = fluid_.v[2].data();
-      for (int i = begin; i < end; ++i) {
-        prefetch(turns_, i);
-        const auto v = turns[cell[i]].apply(vx[i], vy[i], vz[i]);
-        vx[i] = v[0];
-        vy[i] = v[1];
-        vz[i] = v[2];
-      }
-    }
-  }
+  void turn(int begin, int end) { mpc::turn<D>(fluid_, turns_, begin, end); }
 
   void fly(int begin, int end)
   {
-    std::array<double *, D> x, v;
-    for (int a = 0; a < D; ++a) {
-      x[a] = fluid_.x[a].data();
-      v[a] = fluid_.v[a].data();
-    }
+    const auto *walls = method_.walls.get();
     try {
-      stream<D>(x, v, Field<D>{method_.field}, method_.interval, method_.walls.get(), begin,
-                end);
+      if constexpr (single)
+        mpc::fly<D>(fluid_, grid_, method_.field, kick(), method_.interval, walls, begin, end);
+      else
+        mpc::fly<D>(fluid_, method_.field, method_.interval, walls, begin, end);
     } catch (const TooManyBounces &bounces) {
       throw bounces.fault(fluid_.number(bounces.index));
     }
   }
 
-  // Wrap and find the cells. Whoever is in none of this process's cells, has flown further than the
-  // box, or is nowhere, becomes a stray; sum() looks closer.
+  // What the field adds to velocities in this interval.
+  Vector<D> kick() const
+  {
+    Vector<D> kick;
+    for (int a = 0; a < D; ++a)
+      kick[a] = dithered(method_.interval * method_.field[a], digit_, collisions_);
+    return kick;
+  }
+
+  // Strays may be in a cell of this process after all: sum() looks closer.
   void sort(int begin, int end)
   {
-    std::int32_t *__restrict cell = fluid_.cell.data();
-    std::int32_t stride = 1;
-    for (int a = 0; a < D; ++a) {
-      double *__restrict x = fluid_.x[a].data();
-      const double size = grid_.box[a], shift = grid_.shift[a], per_edge = 1 / grid_.edge;
-      const std::int32_t rows = grid_.shape[a], lower = grid_.lower[a], extent = grid_.extent(a);
-      const bool periodic = grid_.periodic[a];
-      for (int i = begin; i < end; ++i) {
-        double at = x[i];
-        if (periodic) {
-          at = at < 0 ? at + size : at;
-          at = at >= size ? at - size : at;
-          x[i] = at;
-        }
-        const bool inside = (at >= 0) & (at <= size);
-        std::int32_t row = static_cast<std::int32_t>(inside ? at * per_edge + shift : 0.0);
-        row = row < rows ? row : (periodic ? row - rows : rows - 1);
-        row -= lower;
-        const bool mine = inside & (row >= 0) & (row < extent);
-        const std::int32_t before = a == 0 ? 0 : cell[i];
-        cell[i] = mine & (before >= 0) ? before + stride * row : STRAY;
-      }
-      stride *= extent;
-    }
+    if constexpr (single)
+      find_cells<D>(fluid_, grid_, method_.interval, begin, end, STRAY);
+    else
+      find_cells<D>(fluid_, grid_, begin, end, STRAY);
   }
 
   void sum(int begin, int end)
   {
+    const auto *cell = fluid_.cell.data();
     if (!collides()) {
       for (int i = begin; i < end; ++i)
-        if (fluid_.cell[i] < 0) settle(i);
+        if (cell[i] < 0) settle(i);
       return;
     }
-    constexpr int line = CACHE_LINE / sizeof(double);
-    for (int i = begin; i < end; ++i) {
-      if (i % line == 0) prefetch_state(i + BLOCK);    // of the next block
-      if constexpr (D == 3) prefetch(sums_.of, i);
-      if (fluid_.cell[i] >= 0 || settle(i)) add_to(sums_.of[fluid_.cell[i]], i);
+    constexpr int line = CACHE_LINE / sizeof(Real);
+    if constexpr (single) {
+      const AddFour<D> add_four(fluid_, sums_);
+      for (int i = begin; i < end; i += 4) {
+        if (i % line == 0) prefetch_state(i + BLOCK);    // of the next block
+        if (i + 4 <= end && (cell[i] | cell[i + 1] | cell[i + 2] | cell[i + 3]) >= 0)
+          add_four(i);
+        else
+          for (int k = i; k < std::min(i + 4, end); ++k)
+            if (cell[k] >= 0 || settle(k)) add(k);
+      }
+    } else {
+      for (int i = begin; i < end; ++i) {
+        if (i % line == 0) prefetch_state(i + BLOCK);
+        if constexpr (D == 3) prefetch(sums_.of, fluid_.cell, i);
+        if (cell[i] >= 0 || settle(i)) add(i);
+      }
     }
   }
+
+  // To the sums of its cell.
+  void add(int i) { sums_.add(fluid_.cell[i], fluid_.velocity(i)); }
 
   // Whether a stray is in a cell of this process after all.
   bool settle(int i)
@@ -360,7 +409,7 @@ template <int D> class Solver {
     for (int i = begin; i < end; ++i)
       if (fluid_.cell[i] == STRAY) fluid_.cell[i] = find(i);
     const auto before = held_.size();
-    method_.coupling->watch(fluid_, begin, end, held_);
+    if constexpr (!single) method_.coupling->watch(fluid_, begin, end, held_);
     for (auto k = before; k < held_.size(); ++k) fluid_.cell[held_[k]] = TAKEN;
   }
 
@@ -411,11 +460,11 @@ template <int D> class Solver {
   void land(const Flight<D> &flight, int i, int cell)
   {
     for (int a = 0; a < D; ++a) {
-      fluid_.x[a][i] = flight.x[a];
-      fluid_.v[a][i] = flight.v[a];
+      fluid_.set_position(a, i, flight.x[a]);
+      fluid_.v[a][i] = static_cast<Real>(flight.v[a]);
     }
     fluid_.cell[i] = cell;
-    add_to(sums_.of[cell], i);
+    add(i);
   }
 
   int locate(Flight<D> &flight) const
@@ -424,26 +473,24 @@ template <int D> class Solver {
     return grid_.local(flight.x);
   }
 
-  void add_to(CellSum<D> &sum, int i)
-  {
-    if constexpr (D == 2)
-      sum.add(fluid_.v[0][i], fluid_.v[1][i]);
-    else
-      sum.add(fluid_.v[0][i], fluid_.v[1][i], fluid_.v[2][i]);
-  }
-
   // The cell of a stray, if it is this process's after all.
   int find(int i)
   {
     Vector<D> x;
     for (int a = 0; a < D; ++a) {
-      x[a] = fluid_.x[a][i] = wrapped<D>(grid_, a, fluid_.x[a][i]);
+      x[a] = wrapped<D>(grid_, a, fluid_.position(a, i));
+      fluid_.set_position(a, i, x[a]);
       const bool inside = x[a] >= 0 && x[a] <= grid_.box[a];
       if (!inside || !std::isfinite(fluid_.v[a][i]))
         throw Fault("fluid particle " + std::to_string(fluid_.number(i)) + " has " + "xyz"[a] + " = " +
                     std::to_string(x[a]) + " and v" + "xyz"[a] + " = " +
                     std::to_string(fluid_.v[a][i]) +
                     ": not a number, or beyond a wall; the time step is too long");
+      if (single && std::abs(fluid_.v[a][i]) * method_.interval >= LONGEST_FLIGHT * grid_.edge)
+        throw Fault("precision single: fluid particle " + std::to_string(fluid_.number(i)) +
+                    " has v" + "xyz"[a] + " = " + std::to_string(fluid_.v[a][i]) +
+                    ": it flies further than " +
+                    std::to_string(static_cast<int>(LONGEST_FLIGHT)) + " cells");
     }
     return grid_.local(x);
   }
@@ -453,7 +500,7 @@ template <int D> class Solver {
     bring_home<D>(travelling_, grid_, processes_);
     for (const auto &particle : travelling_) {
       fluid_.append(particle, grid_.local(particle.x));
-      add_to(sums_.of[fluid_.cell.back()], fluid_.size() - 1);
+      add(fluid_.size() - 1);
     }
     travelling_.clear();
   }
@@ -462,56 +509,84 @@ template <int D> class Solver {
   {
     const CounterRandom random{method_.seed, collisions_};
     auto *coupling = method_.coupling.get();
-    auto *solvent = method_.random_solvent.get();
     auto *thermostat = method_.thermostat.get();
     if (collides()) {
       if (joining()) coupling->join(grid_, colloids, sums_, processes_);
       make_turns(random);
+      if (scales()) scale_turns(random);
       turning_ = true;
-      if (thermostat) {
-        Collision<D> collision{grid_, random, sums_, turns_, processes_};
-        thermostat->scale(collision);
-        if (thermostat->redraws()) {
-          turn();
-          thermostat->redraw(fluid_, random);
-        }
+      if (thermostat && thermostat->redraws()) {
+        turn();
+        thermostat->redraw(fluid_, random);
       }
       for (const auto &[cell, cut] : cut_) method_.walls->take(cut, lost(cell));
-      if (joining()) coupling->turn(turns_, processes_);
+      if constexpr (!single)
+        if (joining()) coupling->turn(turns_, processes_);
     }
-    if (solvent) {
-      solvent->begin(fluid_, random, particles_);
-      if (!solvent->replaces_collision())
-        for (int begin = 0; begin < fluid_.size(); begin += BLOCK) {
-          const int end = std::min(begin + BLOCK, fluid_.size());
-          if (turning_) turn(begin, end);
-          solvent->collect(fluid_, begin, end);
-        }
-      solvent->share(processes_);
-      turning_ = false;
-      redrawing_ = true;
-    }
+    if constexpr (!single)
+      if (method_.random_solvent) begin_redrawing(random);
     ++collisions_;
   }
 
+  // Of each cell; in single precision rounded at once where no thermostat is to scale them.
   void make_turns(const CounterRandom &random)
   {
-    const auto words = random.mixed(Stream::Rotation);
-    grid_.each_cell([&](int cell, const std::array<int, D> &rows) {
-      method_.rotation.draw(words, grid_.number(rows), turns_[cell]);
-      fix_point<D>(turns_[cell], sums_.mean(cell));
-    });
     cut_.clear();
-    if (!method_.walls) return;
-    const auto &walls = *method_.walls;
-    const bool alike = !walls.across(0);    // all cells side by side along the first axis
+    const auto words = random.mixed(Stream::Rotation);
+    const auto *walls = method_.walls.get();
+    const bool alike = walls && !walls->across(0);    // all cells side by side along the first axis
     Cut<D> cut;
-    grid_.each_cell([&](int cell, const std::array<int, D> &rows) {
-      if (!alike || rows[0] == grid_.lower[0]) cut = walls.cutting(grid_, rows);
+    const auto make = [&](int cell, const std::array<int, D> &rows, Turn<D> &turn) {
+      const auto number = grid_.number(rows);
+      method_.rotation.draw(words, number, turn);
+      fix_point<D>(turn, sums_.mean(cell));
+      if (!walls) return;
+      if (!alike || rows[0] == grid_.lower[0]) cut = walls->cutting(grid_, rows);
       if (cut.count == 0) return;
-      fix_point<D>(turns_[cell], walls.mean_of_cut(cut, sums_, cell, random, grid_.number(rows)));
+      fix_point<D>(turn, walls->mean_of_cut(cut, sums_, cell, random, number));
       cut_.push_back({cell, cut});
+    };
+    grid_.each_cell([&](int cell, const std::array<int, D> &rows) {
+      if constexpr (!single) {
+        make(cell, rows, turns_[cell]);
+      } else if (scales()) {
+        make(cell, rows, exact_turns_[cell]);
+      } else {
+        Turn<D> turn;
+        make(cell, rows, turn);
+        turns_[cell] = {turn, words.word(3, grid_.number(rows)) & FINER};
+      }
     });
+  }
+
+  void scale_turns(const CounterRandom &random)
+  {
+    const auto scale = [&](Array<Turn<D>> &turns) {
+      Collision<D> collision{grid_, random, sums_, turns, processes_};
+      method_.thermostat->scale(collision);
+    };
+    if constexpr (single) {
+      scale(exact_turns_);
+      for (int cell = 0; cell < grid_.cells(); ++cell)
+        turns_[cell] = {exact_turns_[cell], NEAREST};
+    } else {
+      scale(turns_);
+    }
+  }
+
+  void begin_redrawing(const CounterRandom &random)
+  {
+    auto &solvent = *method_.random_solvent;
+    solvent.begin(fluid_, random, particles_);
+    if (!solvent.replaces_collision())
+      for (int begin = 0; begin < fluid_.size(); begin += BLOCK) {
+        const int end = std::min(begin + BLOCK, fluid_.size());
+        if (turning_) turn(begin, end);
+        solvent.collect(fluid_, begin, end);
+      }
+    solvent.share(processes_);
+    turning_ = false;
+    redrawing_ = true;
   }
 
   // Momentum that what is in a cell loses in its turn.
@@ -526,11 +601,12 @@ template <int D> class Solver {
   Grid<D> grid_;
   Method<D> method_;
   Processes &processes_;
-  Fluid<D> fluid_;
+  Fluid<D, Real> fluid_;
   double particles_ = 0;             // of all processes
   std::uint64_t collisions_ = 0;
   CellSums<D> sums_;
-  Array<Turn<D>> turns_;       // of the last collision
+  Array<KeptTurn> turns_;            // of the last collision
+  Array<Turn<D>> exact_turns_;       // before a thermostat's are rounded to single
   std::vector<std::pair<int, Cut<D>>> cut_;    // cells that walls cut
   bool turning_ = false;             // whether they are still to be applied
   bool redrawing_ = false;           // and whether the random solvent is to redraw after them
@@ -538,7 +614,8 @@ template <int D> class Solver {
   std::vector<int> held_;            // particles that have met colloids
   std::vector<Particle<D>> travelling_;
   std::vector<Flight<D>> landed_;
-  TileOrder<D> tiles_;
+  TileOrder<D, Real> tiles_;
+  const double digit_ = last_digit(method_.thermal_speed);
 };
 
 }    // namespace mpc

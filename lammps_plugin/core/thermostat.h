@@ -29,6 +29,7 @@ template <int D> class Thermostat {
   // Whether redraw is to be called, with the velocities after the collision.
   virtual bool redraws() const { return false; }
   virtual void redraw(Fluid<D> &, const CounterRandom &) {}
+  virtual void redraw(Fluid<D, float> &, const CounterRandom &) {}
 };
 
 // Each layer of cells across an axis, parallel to the walls, is rescaled to T (3.53, 3.54).
@@ -166,17 +167,23 @@ template <int D> class AndersenThermostat : public Thermostat<D> {
 
   bool redraws() const override { return true; }
 
-  void redraw(Fluid<D> &fluid, const CounterRandom &random) override
+  void redraw(Fluid<D> &fluid, const CounterRandom &random) override { draw(fluid, random); }
+  void redraw(Fluid<D, float> &fluid, const CounterRandom &random) override
+  {
+    draw(fluid, random);
+  }
+
+ private:
+  template <class Real> void draw(Fluid<D, Real> &fluid, const CounterRandom &random) const
   {
     for (int i = 0; i < fluid.size(); ++i) {
       const auto number = fluid.number(i);
       if (uniform(random.words(Stream::Thermostat, number)[0]) >= probability_) continue;
       const auto z = normals<D>(random.words(Stream::Thermostat, number, 1));
-      for (int a = 0; a < D; ++a) fluid.v[a][i] = speed_ * z[a];
+      for (int a = 0; a < D; ++a) fluid.v[a][i] = static_cast<Real>(speed_ * z[a]);
     }
   }
 
- private:
   static constexpr double FREQUENCY = 0.1;    // redrawings of a particle in a time unit
   double speed_, probability_;
 };

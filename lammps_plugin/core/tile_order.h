@@ -9,9 +9,9 @@ namespace mpc {
 // Particles that share cells come to lie near each other, so that the cost of a collision does not
 // depend on the size of the fluid; within a tile their order stays mixed, which keeps sums into one
 // cell from waiting for each other.
-template <int D> class TileOrder {
+template <int D, class Real = double> class TileOrder {
  public:
-  void sort(Fluid<D> &fluid, const Grid<D> &grid)
+  void sort(Fluid<D, Real> &fluid, const Grid<D> &grid)
   {
     std::array<int, D> tiles;
     int count = 1;
@@ -36,7 +36,10 @@ template <int D> class TileOrder {
     for (int i = 0; i < fluid.size(); ++i) order_[i] = next[tile[fluid.cell[i]]]++;
     for (int a = 0; a < D; ++a) {
       reorder(fluid.x[a], sorted_);
-      reorder(fluid.v[a], sorted_);
+      if constexpr (Fluid<D, Real>::single)
+        reorder(fluid.v[a], sorted_single_);
+      else
+        reorder(fluid.v[a], sorted_);
     }
     Array<std::uint32_t> ids;
     reorder(fluid.id, ids);
@@ -48,10 +51,14 @@ template <int D> class TileOrder {
 
   double bytes() const
   {
-    return order_.capacity() * 1.0 * sizeof(int) + sorted_.capacity() * 1.0 * sizeof(double);
+    return order_.capacity() * 1.0 * sizeof(int) +
+        sorted_.capacity() * 1.0 * sizeof(Coordinate) +
+        sorted_single_.capacity() * 1.0 * sizeof(float);
   }
 
  private:
+  using Coordinate = typename Fluid<D, Real>::Coordinate;
+
   static constexpr int TILE = D == 2 ? 8 : 4;    // cells along each edge; they share a cache
 
   template <class T> void reorder(Array<T> &values, Array<T> &sorted)
@@ -62,7 +69,8 @@ template <int D> class TileOrder {
   }
 
   std::vector<int> order_;
-  Array<double> sorted_;
+  Array<Coordinate> sorted_;
+  Array<float> sorted_single_;
 };
 
 }    // namespace mpc

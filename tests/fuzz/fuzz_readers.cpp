@@ -49,10 +49,11 @@ Bytes fluid_file(const std::vector<Particle<D>> &particles)
   return bytes;
 }
 
-Bytes restart(const std::vector<Particle<D>> &particles, int pulls, int averages, bool apart)
+Bytes restart(const std::vector<Particle<D>> &particles, int pulls, int averages, bool apart,
+              bool single)
 {
   Bytes bytes, records;
-  append(bytes, restart_header(apart, D, particles.size(), 3, 1, pulls, averages, SEED));
+  append(bytes, restart_header(apart, single, D, particles.size(), 3, 1, pulls, averages, SEED));
   for (int n = 0; n < pulls; ++n) append(records, Pull{0, 1.0 * n, {1, 2}, {3, 4}});
   for (int n = 0; n < averages; ++n) append(records, 1.5 * n);
   if (apart)
@@ -117,12 +118,12 @@ bool load(const Bytes &bytes)
   }
 }
 
-bool read(const Bytes &bytes, std::vector<Particle<D>> &particles)
+bool read(const Bytes &bytes, bool single, std::vector<Particle<D>> &particles)
 {
   try {
     const auto memory = exactly(bytes);
     read_restart<D, Pull>(
-        memory.get(), SEED, [](const Pull &) {}, [](double) {},
+        memory.get(), SEED, single, [](const Pull &) {}, [](double) {},
         [&](const Particle<D> &particle) { particles.push_back(particle); },
         [](const Apart &apart) { if (apart.file[0] != '/') std::abort(); });
     return false;
@@ -164,7 +165,8 @@ int main(int, char **argv)
     auto damaged = file;
     damage(damaged, chance, false);
     refused += load(damaged);
-    const auto whole = restart(particles, chance() % 4, 3, chance() % 2);
+    const bool single = chance() % 2;
+    const auto whole = restart(particles, chance() % 4, 3, chance() % 2, single);
     auto other = whole;
     damage(other, chance, true);    // LAMMPS reads as many bytes as it wrote
     const auto differing = file_apart(particles, chance);
@@ -173,11 +175,15 @@ int main(int, char **argv)
       return 1;
     }
     std::vector<Particle<D>> found;
-    const bool no = read(other, found);
+    const bool no = read(other, single, found);
     refused += no;
     if (no == (other == whole)) {
       std::printf("case %ld: a restart that is %s was %s\n", n, other == whole ? "whole" : "damaged",
                   no ? "refused" : "read");
+      return 1;
+    }
+    if (!read(whole, !single, found)) {
+      std::printf("case %ld: a restart of the other precision was read\n", n);
       return 1;
     }
   }

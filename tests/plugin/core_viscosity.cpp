@@ -18,16 +18,16 @@ namespace {
 constexpr int KICK_INTERVAL = 5;    // collisions; longer than the memory of the stress
 constexpr int BLOCKS = 20;
 
-// Kicks the fluid after every few collisions, and remembers the amplitude before and after.
-template <int D> class KickedWave : public RandomSolvent<D> {
+// Kicks the fluid, and remembers the amplitude before and after.
+class KickedWave {
  public:
   KickedWave(double wavenumber, double kick) : wavenumber_(wavenumber), kick_(kick) {}
 
-  bool replaces_collision() const override { return false; }
-
-  void redraw(Fluid<D> &fluid, const CounterRandom &, Processes &, double particles) override
+  template <int D> void kick(Solver<D> &solver)
   {
-    if (++collisions_ % KICK_INTERVAL != 0) return;
+    const double particles = solver.particles();
+    solver.momentum();    // velocities are then those after the last collision
+    auto &fluid = const_cast<Fluid<D> &>(solver.fluid());    // no user needs a kick like this
     double mean = 0, squares = 0, amplitude = 0;
     sine_.resize(fluid.size());
     for (int i = 0; i < fluid.size(); ++i) {
@@ -45,7 +45,6 @@ template <int D> class KickedWave : public RandomSolvent<D> {
 
  private:
   double wavenumber_, kick_;
-  int collisions_ = 0;
   std::vector<double> sine_;
 };
 
@@ -66,12 +65,10 @@ template <int D> int run(char **argument)
   const Grid<D> grid(box, periodic, 1.0);
   const double wavenumber = 2 * M_PI / width, between = KICK_INTERVAL * interval;
   const double kick = -amplitude * std::expm1(-guess * wavenumber * wavenumber * between);
-  auto wave = std::make_unique<KickedWave<D>>(wavenumber, kick);
-  const auto &amplitudes = *wave;
+  KickedWave wave(wavenumber, kick);
 
   Method<D> method{seed, interval, {}, Rotation(angle, axes), true, {}, {}, {}, {}};
   method.thermostat = std::make_unique<LayerThermostat<D>>(1.0);
-  method.random_solvent = std::move(wave);
   Processes alone;
   Solver<D> solver(grid, std::move(method), alone);
   solver.reset(0, grid.lower, grid.upper);
@@ -97,20 +94,21 @@ template <int D> int run(char **argument)
   for (long c = 0; c < last; ++c) {
     solver.begin_interval({}, 0.0);
     solver.end_interval();
+    if (solver.collisions() % KICK_INTERVAL == 0) wave.kick(solver);
   }
 
   // before[n + 1] = decay after[n] + thermal noise; the error is that of the blocks of the residuals
-  const std::size_t begin = first / KICK_INTERVAL, end = amplitudes.after.size() - 1;
+  const std::size_t begin = first / KICK_INTERVAL, end = wave.after.size() - 1;
   double sum_before = 0, sum_after = 0;
   for (std::size_t n = begin; n < end; ++n) {
-    sum_after += amplitudes.after[n];
-    sum_before += amplitudes.before[n + 1];
+    sum_after += wave.after[n];
+    sum_before += wave.before[n + 1];
   }
   const double decay = sum_before / sum_after;
   std::vector<double> residual(BLOCKS);
   for (std::size_t n = begin; n < end; ++n)
     residual[(n - begin) * BLOCKS / (end - begin)] +=
-        amplitudes.before[n + 1] - decay * amplitudes.after[n];
+        wave.before[n + 1] - decay * wave.after[n];
   double squares = 0;
   for (double block : residual) squares += block * block;
   const double rate = wavenumber * wavenumber * between;
